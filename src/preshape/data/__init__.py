@@ -1,0 +1,1 @@
+"""Scenes, trials, their tables, folds and the data module."""

@@ -1,0 +1,35 @@
+"""A scene: one object at rest on the table before one camera. Everything that an image is a function of."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from jaxtyping import Float
+
+from preshape.geometry.camera import Camera
+from preshape.perception.observation import Observation
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """One object at rest on the table.
+
+    Args:
+        scene_id: number of the scene in its table.
+        object_id: name of the object in its object set.
+        T_world_object: settled pose of the object.
+        camera: the camera that looks at it.
+        seed: seed of everything random in the scene (placement, sensor noise).
+    """
+
+    scene_id: int
+    object_id: str
+    T_world_object: Float[np.ndarray, "4 4"]
+    camera: Camera
+    seed: int
+
+
+class SceneRenderer(Protocol):
+    """Makes the image of a scene; a pure function of the scene."""
+
+    def __call__(self, scene: Scene) -> Observation: ...

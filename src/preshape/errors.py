@@ -1,0 +1,21 @@
+"""The one error that a user can cause: bad input, said so that the user can mend it."""
+
+from pathlib import Path
+
+
+class InputError(Exception):
+    """Something that the user gave cannot be used.
+
+    Entry points print it as one message and exit with status 2, without a traceback.
+
+    Args:
+        what: what is wrong, as a full sentence without its full stop.
+        where: the file, folder or setting at fault.
+        fix: what the user can do about it.
+    """
+
+    def __init__(self, what: str, *, where: str | Path, fix: str) -> None:
+        self.what = what
+        self.where = str(where)
+        self.fix = fix
+        super().__init__(f"{what}\n  where: {self.where}\n  fix:   {fix}")

@@ -1,0 +1,1 @@
+"""The grasp space (what theta means) and the heuristic initial grasps."""

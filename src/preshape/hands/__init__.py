@@ -1,0 +1,1 @@
+"""Differentiable forward kinematics of hands: theta to palm, fingertips and pixels."""

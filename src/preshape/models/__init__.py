@@ -1,0 +1,1 @@
+"""Networks that learn p(success | theta, view), and their Lightning module."""

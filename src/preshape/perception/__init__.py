@@ -1,0 +1,1 @@
+"""From an RGB-D view to the object, its surface and the 8-channel image."""

@@ -1,0 +1,1 @@
+"""Planners that climb the success probability within bounds."""
