@@ -1,1 +1,1 @@
-"""Networks that learn p(success | theta, view), and their Lightning module."""
+"""Networks that predict grasp success, and how they are trained."""

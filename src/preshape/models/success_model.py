@@ -1,0 +1,96 @@
+"""What every network that predicts grasp success has in common."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+
+import torch
+from jaxtyping import Float
+from torch import Tensor, nn
+
+IMAGE_CHANNELS = 8
+"""Channels of the image: RGB, depth, normal xyz, curvature."""
+MIN_IMAGE_STD = 1e-3
+"""Floor of a channel's standard deviation, so that a constant channel is not blown up."""
+MIN_THETA_STD = 0.05
+"""Floor of a parameter's standard deviation (m or rad): a joint that the heuristic never moves still counts."""
+
+
+class SuccessModel(nn.Module, ABC):
+    """A network for log odds of p(Y = 1 | theta, z), the probability that a grasp lifts the object.
+
+    f = k(m(z), n(theta)) of the paper's section 3.1 is split into `features` = m, which a planner computes once
+    per view, and `head` = k(., n(.)), which it evaluates and differentiates again and again.
+
+    The statistics that normalise the inputs are buffers, so they travel with the weights.
+
+    Args:
+        name: name of the network, compared with that of a weights file.
+        grasp_space: name of the grasp space of theta.
+        theta_dim: number d of its parameters.
+    """
+
+    image_mean: Tensor
+    image_std: Tensor
+    theta_mean: Tensor
+    theta_std: Tensor
+
+    def __init__(self, name: str, grasp_space: str, theta_dim: int) -> None:
+        super().__init__()
+        self.name = name
+        self.grasp_space = grasp_space
+        self.theta_dim = theta_dim
+        self.register_buffer("image_mean", torch.zeros(IMAGE_CHANNELS))
+        self.register_buffer("image_std", torch.ones(IMAGE_CHANNELS))
+        self.register_buffer("theta_mean", torch.zeros(theta_dim))
+        self.register_buffer("theta_std", torch.ones(theta_dim))
+
+    @abstractmethod
+    def features(self, patch: Float[Tensor, "b 8 h w"]) -> Float[Tensor, "b *f"]:
+        """Image features of object patches."""
+
+    @abstractmethod
+    def head(self, features: Float[Tensor, "f *g"], theta: Float[Tensor, "b {self.theta_dim}"]) -> Tensor:
+        """Logits of b grasps, from the features of b patches, or of the one patch that they all share."""
+
+    def forward(
+        self, patch: Float[Tensor, "b 8 h w"], theta: Float[Tensor, "b {self.theta_dim}"]
+    ) -> Float[Tensor, "b"]:
+        """Logits of grasps theta (camera frame, m and rad), each with its own patch."""
+        logits: Tensor = self.head(self.features(patch), theta)
+        return logits
+
+    def fit_statistics(self, patches: Iterable[Tensor], theta: Float[Tensor, "n d"]) -> None:
+        """Set the normalisation from training data.
+
+        Args:
+            patches: patches (8, h, w) of the training scenes; values that are not finite are left out.
+            theta: grasp configurations of the training trials.
+        """
+        mean, std = channel_statistics(patches)
+        self.image_mean.copy_(mean)
+        self.image_std.copy_(std.clamp_min(MIN_IMAGE_STD))
+        finite = theta[theta.isfinite().all(dim=1)].double()
+        self.theta_mean.copy_(finite.mean(dim=0))
+        self.theta_std.copy_(finite.std(dim=0, correction=0).clamp_min(MIN_THETA_STD))
+
+    def normalize_patch(self, patch: Float[Tensor, "b 8 h w"]) -> Float[Tensor, "b 8 h w"]:
+        """Patches with zero mean and unit deviation per channel over the training data."""
+        return (patch - self.image_mean.view(1, -1, 1, 1)) / self.image_std.view(1, -1, 1, 1)
+
+    def normalize_theta(self, theta: Float[Tensor, "b d"]) -> Float[Tensor, "b d"]:
+        """Configurations with zero mean and unit deviation per parameter over the training data."""
+        return (theta - self.theta_mean) / self.theta_std
+
+
+def channel_statistics(patches: Iterable[Tensor]) -> tuple[Float[Tensor, "c"], Float[Tensor, "c"]]:
+    """Mean and standard deviation per channel over the finite values of patches (c, h, w), summed in double."""
+    count, total, squares = torch.zeros(3, IMAGE_CHANNELS, dtype=torch.float64).unbind()
+    for patch in patches:
+        values = patch.flatten(1).double()
+        finite = values.isfinite()
+        values = values.where(finite, 0.0)
+        count += finite.sum(dim=1)
+        total += values.sum(dim=1)
+        squares += values.square().sum(dim=1)
+    mean = total / count.clamp_min(1)
+    return mean, (squares / count.clamp_min(1) - mean.square()).clamp_min(0).sqrt()
