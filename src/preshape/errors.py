@@ -1,5 +1,7 @@
 """The one error that a user can cause: bad input, said so that the user can mend it."""
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 
@@ -19,3 +21,7 @@ class InputError(Exception):
         self.where = str(where)
         self.fix = fix
         super().__init__(f"{what}\n  where: {self.where}\n  fix:   {fix}")
+
+    def __reduce__(self) -> tuple[Callable[[], "InputError"], tuple[()]]:
+        # the default would call the class without its keywords when a worker process sends the error back
+        return partial(InputError, self.what, where=self.where, fix=self.fix), ()

@@ -1,0 +1,102 @@
+"""Checks that the chosen parts of a configuration fit together, before any work starts."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from hydra.core.hydra_config import HydraConfig
+from omegaconf import DictConfig, OmegaConf
+
+from preshape.errors import InputError
+
+
+def check_composition(cfg: DictConfig) -> None:
+    """Refuse a configuration whose parts do not fit together.
+
+    Only the parts that a configuration has are checked, so every command uses this one function.
+
+    Raises:
+        InputError: naming the two choices that clash, or the setting that is missing.
+    """
+    _check_nothing_is_missing(cfg)
+    _check_model_fits_robot(cfg)
+    _check_dataset_fits_robot(cfg)
+    _check_planners_have_a_network(cfg)
+
+
+def _check_nothing_is_missing(cfg: DictConfig) -> None:
+    missing = sorted(OmegaConf.missing_keys(cfg))
+    if missing:
+        groups = dict.fromkeys(key.split(".")[0] for key in missing)
+        raise InputError(
+            f"A value must be given for {', '.join(missing)}",
+            where=", ".join(_choice(cfg, group) for group in groups),
+            fix="add " + " ".join(f"{key}=..." for key in missing) + " to the command",
+        )
+
+
+def _check_model_fits_robot(cfg: DictConfig) -> None:
+    robot_space = OmegaConf.select(cfg, "robot.grasp_space.name")
+    model_space = OmegaConf.select(cfg, "model.grasp_space")
+    if None in (robot_space, model_space) or robot_space == model_space:
+        return
+    robot, model = _choice(cfg, "robot"), _choice(cfg, "model")
+    raise InputError(
+        f"{robot} has grasp space {robot_space}{_parameter_count(cfg)}, "
+        f"but {model} is built for {model_space}",
+        where=f"{robot} with {model}",
+        fix=f"choose a model for {robot_space}, or a robot with {model_space}",
+    )
+
+
+def _check_dataset_fits_robot(cfg: DictConfig) -> None:
+    robot_name = OmegaConf.select(cfg, "robot.name")
+    dataset_robot = OmegaConf.select(cfg, "dataset.robot")
+    if None in (robot_name, dataset_robot) or robot_name == dataset_robot:
+        return
+    robot, dataset = _choice(cfg, "robot"), _choice(cfg, "dataset")
+    raise InputError(
+        f"{dataset} holds trials of robot {dataset_robot}, but {robot} is {robot_name}",
+        where=f"{robot} with {dataset}",
+        fix=f"choose the robot {dataset_robot}, or collect trials with `python sim/collect.py {robot}`",
+    )
+
+
+def _check_planners_have_a_network(cfg: DictConfig) -> None:
+    needing = [choice for choice, node in _planners(cfg) if OmegaConf.select(node, "needs_model")]
+    if not needing:
+        return
+    planner, weights = needing[0], OmegaConf.select(cfg, "weights")
+    train = "train a network with `python src/train.py` and give its file with weights=FILE.safetensors"
+    if weights is None:
+        raise InputError(
+            f"{planner} climbs the success probability of a trained network, but weights is not set",
+            where=f"{planner} with weights=null",
+            fix=f"{train}, or choose planner=heuristic",
+        )
+    if not Path(weights).is_file():
+        raise InputError(
+            f"{planner} needs a trained network, but the weights file does not exist",
+            where=weights,
+            fix=train,
+        )
+
+
+def _planners(cfg: DictConfig) -> Iterator[tuple[str, Any]]:
+    """Every planner of the configuration with how it was chosen: `planner`, and those under `planners`."""
+    if OmegaConf.select(cfg, "planner") is not None:
+        yield _choice(cfg, "planner"), cfg.planner
+    for name in OmegaConf.select(cfg, "planners") or ():
+        yield f"planners.{name}", cfg.planners[name]
+
+
+def _choice(cfg: DictConfig, group: str) -> str:
+    """How the user chose this part, as on the command line: `robot=lbr4_allegro`."""
+    option = HydraConfig.get().runtime.choices.get(group) if HydraConfig.initialized() else None
+    option = option or OmegaConf.select(cfg, f"{group}.name", throw_on_missing=False)
+    return f"{group}={option}" if option else group
+
+
+def _parameter_count(cfg: DictConfig) -> str:
+    joints = OmegaConf.select(cfg, "robot.grasp_space.joint_limits")
+    return "" if joints is None else f" ({6 + len(joints)} parameters)"

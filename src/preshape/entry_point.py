@@ -1,0 +1,90 @@
+"""What every command does around its own work: compose the configuration, set up, and end understandably."""
+
+import os
+import sys
+from collections.abc import Callable
+from functools import wraps
+from typing import NoReturn
+
+import hydra
+from hydra.core.hydra_config import HydraConfig
+from hydra.errors import ConfigCompositionException, OverrideParseException
+from hydra.types import RunMode
+from omegaconf import DictConfig, OmegaConf
+
+from preshape.composition import check_composition
+from preshape.errors import InputError
+from preshape.paths import project_root
+
+EXIT_BAD_INPUT = 2
+EXIT_INTERRUPTED = 130
+
+OmegaConf.register_new_resolver("project_root", lambda: str(project_root()), replace=True)
+
+
+def entry_point(config_name: str) -> Callable[[Callable[[DictConfig], None]], Callable[[], None]]:
+    """Make a command of `main(cfg)`, configured by `conf/<config_name>.yaml` and the command line.
+
+    The current directory stays as it is. A composition that does not fit is refused before `main` runs.
+    Whatever the user got wrong ends as one message with exit status 2, an interrupt with status 130; anything
+    else is a defect and keeps its traceback.
+    """
+
+    def decorate(main: Callable[[DictConfig], None]) -> Callable[[], None]:
+        @wraps(main)
+        def job(cfg: DictConfig) -> None:
+            _run_job(main, cfg)
+
+        @wraps(main)
+        def command() -> None:
+            # Hydra would otherwise print its own report of every exception and exit before we see it.
+            os.environ["HYDRA_FULL_ERROR"] = "1"
+            try:
+                conf = str(project_root() / "conf")
+                hydra.main(config_path=conf, config_name=config_name, version_base="1.3")(job)()
+            except InputError as error:
+                _refuse(str(error))
+            except (ConfigCompositionException, OverrideParseException) as error:
+                _refuse(_misuse(error))
+            except KeyboardInterrupt:
+                _end("Interrupted.", EXIT_INTERRUPTED)
+
+        return command
+
+    return decorate
+
+
+def _run_job(main: Callable[[DictConfig], None], cfg: DictConfig) -> None:
+    try:
+        check_composition(cfg)
+        main(cfg)
+    except Exception as error:
+        bad_input = _bad_input_behind(error)
+        if bad_input is None:
+            raise
+        if HydraConfig.get().mode is RunMode.MULTIRUN:  # the sweep says which of its jobs it was
+            raise bad_input from None
+        _refuse(str(bad_input))
+
+
+def _bad_input_behind(error: BaseException | None) -> InputError | None:
+    """The InputError that `hydra.utils.instantiate` wrapped, if there is one."""
+    while error is not None and not isinstance(error, InputError):
+        error = error.__cause__
+    return error
+
+
+def _misuse(error: Exception) -> str:
+    """What Hydra says about the command line, without its list of folders searched."""
+    said = str(error).split("\nConfig search path")[0].strip()
+    reason = "" if error.__cause__ is None else str(error.__cause__).splitlines()[0]
+    return said if reason in said else f"{said}\n{reason}"
+
+
+def _refuse(message: str) -> NoReturn:
+    _end(f"ERROR: {message}", EXIT_BAD_INPUT)
+
+
+def _end(message: str, status: int) -> NoReturn:
+    sys.stderr.write(message + "\n")
+    sys.exit(status)
