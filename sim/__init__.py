@@ -1,0 +1,1 @@
+"""The simulated laboratory: robots, objects, camera and trials in SAPIEN."""

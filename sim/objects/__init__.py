@@ -1,0 +1,1 @@
+"""Object sets: what stands on the table."""

@@ -1,0 +1,116 @@
+"""Lofts: solids between cross-sections stacked along z, the way that most packages are shaped."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy.spatial import ConvexHull
+
+from sim.objects.object_model import VisualPart
+from sim.objects.shading import shaded_part
+
+COLLISION_CORNERS = 24
+"""Corners of a round cross-section that collides: a 24-gon lies within 1 % of its circle's radius."""
+VISUAL_CORNERS = 48
+CONVEXITY_TOLERANCE = 0.01
+"""Slices are joined to one convex part while their common hull adds at most this share of volume."""
+
+
+@dataclass(frozen=True)
+class Station:
+    """A cross-section at height z.
+
+    Args:
+        z: height (m).
+        width, depth: full size along x and y (m).
+        roundness: exponent n of the superellipse |2x/width|^n + |2y/depth|^n = 1: 2 is an ellipse, 4 a rounded
+            rectangle, infinity a rectangle.
+        colour: linear RGB of the wall from here to the next station, and of the lid of the last.
+        offset_y: centre of the cross-section along y (m).
+    """
+
+    z: float
+    width: float
+    depth: float
+    roundness: float
+    colour: tuple[float, float, float]
+    offset_y: float = 0.0
+
+    def ring(self, angles: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n 3"]:
+        """Points (m) of the outline in the given directions (rad), seen from its centre in units of its size."""
+        x, y = np.cos(angles), np.sin(angles)
+        if math.isinf(self.roundness):
+            reach = np.maximum(np.abs(x), np.abs(y))
+        else:
+            reach = (np.abs(x) ** self.roundness + np.abs(y) ** self.roundness) ** (1 / self.roundness)
+        return np.stack(
+            (x / reach * self.width / 2, y / reach * self.depth / 2 + self.offset_y, np.full_like(x, self.z)),
+            axis=1,
+        )
+
+
+Loft = Sequence[Station]
+"""Stations from the bottom to the top; two at the same height make a step."""
+
+
+def convex_parts(loft: Loft) -> list[Float[np.ndarray, "_ 3"]]:
+    """Vertices of as few convex parts as fill the loft."""
+    rings = [_outline(station) for station in loft]
+    slices = [(a, b) for a, b in zip(rings, rings[1:], strict=False) if b[0, 2] > a[0, 2]]
+    parts: list[list[Float[np.ndarray, "_ 3"]]] = []
+    filled = 0.0
+    for bottom, top in slices:
+        volume = ConvexHull(np.concatenate((bottom, top))).volume
+        if parts:
+            joined = ConvexHull(np.concatenate((*parts[-1], bottom, top))).volume
+            if joined <= (1 + CONVEXITY_TOLERANCE) * (filled + volume):
+                parts[-1] += [bottom, top]
+                filled += volume
+                continue
+        parts.append([bottom, top])
+        filled = volume
+    return [_extreme_points(np.concatenate(part)) for part in parts]
+
+
+def visual_parts(loft: Loft) -> list[VisualPart]:
+    """The closed surface of the loft, one part per colour."""
+    rings = [station.ring(_angles(VISUAL_CORNERS)) for station in loft]
+    strips: dict[tuple[float, float, float], list[Float[np.ndarray, "_ 3 3"]]] = {}
+    for station, lower, upper in zip(loft, rings, rings[1:], strict=False):
+        strips.setdefault(station.colour, []).append(_strip(lower, upper))
+    for station, inner, outer in (
+        (loft[0], _centre_of(rings[0]), rings[0]),
+        (loft[-1], rings[-1], _centre_of(rings[-1])),
+    ):
+        strips.setdefault(station.colour, []).append(_strip(inner, outer))
+    return [shaded_part(np.concatenate(triangles), colour) for colour, triangles in strips.items()]
+
+
+def _angles(corners: int) -> Float[np.ndarray, "n"]:
+    return np.arange(corners) * 2 * np.pi / corners
+
+
+def _outline(station: Station) -> Float[np.ndarray, "n 3"]:
+    if math.isinf(station.roundness):
+        return station.ring(np.pi / 4 + _angles(4))
+    return station.ring(_angles(COLLISION_CORNERS))
+
+
+def _centre_of(ring: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "n 3"]:
+    return np.broadcast_to(ring.mean(axis=0), ring.shape)
+
+
+def _strip(lower: Float[np.ndarray, "n 3"], upper: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3 3"]:
+    """Triangles between two rings, facing outwards; those without an area are left out."""
+    lower_next, upper_next = np.roll(lower, -1, axis=0), np.roll(upper, -1, axis=0)
+    triangles = np.concatenate(
+        (np.stack((lower, lower_next, upper_next), axis=1), np.stack((lower, upper_next, upper), axis=1))
+    )
+    edges = triangles[:, 1:] - triangles[:, :1]
+    return triangles[np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1) > 1e-14]
+
+
+def _extreme_points(points: Float[np.ndarray, "n 3"]) -> Float[np.ndarray, "m 3"]:
+    return points[np.sort(ConvexHull(points).vertices)]
