@@ -74,8 +74,10 @@ def _bad_input_behind(error: BaseException | None) -> InputError | None:
     return error
 
 
-def _misuse(error: Exception) -> str:
+def _misuse(error: ConfigCompositionException | OverrideParseException) -> str:
     """What Hydra says about the command line, without its list of folders searched."""
+    if isinstance(error, OverrideParseException):
+        return f"{error.override!r} cannot be read as KEY=VALUE: {error.message.splitlines()[0]}"
     said = str(error).split("\nConfig search path")[0].strip()
     reason = "" if error.__cause__ is None else str(error.__cause__).splitlines()[0]
     return said if reason in said else f"{said}\n{reason}"

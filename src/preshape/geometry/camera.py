@@ -1,7 +1,7 @@
 """Pinhole camera: intrinsics and its pose in the world."""
 
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -37,9 +37,7 @@ class Camera:
     def unproject(self, depth: Float[np.ndarray, "h w"]) -> Float[np.ndarray, "h w 3"]:
         """Organised points in the camera frame (m) of a depth image (m, along z); NaN stays NaN."""
         v, u = np.indices(depth.shape, dtype=depth.dtype)
-        return np.stack(
-            ((u - self.cx) / self.fx * depth, (v - self.cy) / self.fy * depth, depth), axis=-1
-        )
+        return np.stack(((u - self.cx) / self.fx * depth, (v - self.cy) / self.fy * depth, depth), axis=-1)
 
     @classmethod
     def looking_at(
@@ -50,7 +48,7 @@ class Camera:
         width: int,
         height: int,
         focal: float,
-    ) -> Self:
+    ) -> "Camera":
         """Camera at `eye` (m, world) that looks at `target`, with the world's z pointing up in the image."""
         forward = (target - eye) / np.linalg.norm(target - eye)
         right = np.cross(forward, [0.0, 0.0, 1.0])

@@ -1,7 +1,7 @@
 """The grasp space: what each number of theta means for one robot."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 import torch
@@ -35,7 +35,7 @@ class GraspSpace:
     frame: str = "camera"
 
     @classmethod
-    def palm_and_joints(cls, name: str, joint_limits: dict[str, tuple[float, float]]) -> Self:
+    def palm_and_joints(cls, name: str, joint_limits: Mapping[str, Sequence[float]]) -> "GraspSpace":
         """Grasp space of a palm pose and preshape joints with the given (lower, upper) limits in rad."""
         lower = [-np.inf] * 6 + [limits[0] for limits in joint_limits.values()]
         upper = [np.inf] * 6 + [limits[1] for limits in joint_limits.values()]
