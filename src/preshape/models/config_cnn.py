@@ -21,9 +21,7 @@ class ConfigCNN(SuccessModel):
         keep_prob: probability with which dropout keeps a unit of the fully connected layers.
     """
 
-    def __init__(
-        self, name: str, grasp_space: str, theta_dim: int, *, keep_prob: float = 0.75
-    ) -> None:
+    def __init__(self, name: str, grasp_space: str, theta_dim: int, *, keep_prob: float = 0.75) -> None:
         super().__init__(name, grasp_space, theta_dim)
         drop = 1.0 - keep_prob
         self.image_channel = nn.Sequential(

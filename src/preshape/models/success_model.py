@@ -12,14 +12,14 @@ IMAGE_CHANNELS = 8
 MIN_IMAGE_STD = 1e-3
 """Floor of a channel's standard deviation, so that a constant channel is not blown up."""
 MIN_THETA_STD = 0.05
-"""Floor of a parameter's standard deviation (m or rad): a joint that the heuristic never moves still counts."""
+"""Floor of a parameter's standard deviation (m or rad), for joints that the heuristic hardly moves."""
 
 
 class SuccessModel(nn.Module, ABC):
     """A network for log odds of p(Y = 1 | theta, z), the probability that a grasp lifts the object.
 
-    f = k(m(z), n(theta)) of the paper's section 3.1 is split into `features` = m, which a planner computes once
-    per view, and `head` = k(., n(.)), which it evaluates and differentiates again and again.
+    f = k(m(z), n(theta)) of the paper's section 3.1 is split into `features` = m, which a planner computes
+    once per view, and `head` = k(., n(.)), which it evaluates and differentiates again and again.
 
     The statistics that normalise the inputs are buffers, so they travel with the weights.
 
@@ -83,7 +83,7 @@ class SuccessModel(nn.Module, ABC):
 
 
 def channel_statistics(patches: Iterable[Tensor]) -> tuple[Float[Tensor, "c"], Float[Tensor, "c"]]:
-    """Mean and standard deviation per channel over the finite values of patches (c, h, w), summed in double."""
+    """Mean and standard deviation per channel over the finite values of patches (c, h, w)."""
     count, total, squares = torch.zeros(3, IMAGE_CHANNELS, dtype=torch.float64).unbind()
     for patch in patches:
         values = patch.flatten(1).double()
