@@ -1,7 +1,5 @@
 """Putting an object into a SAPIEN scene."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import sapien
 from jaxtyping import Float
@@ -10,61 +8,43 @@ from sapien.render import RenderBodyComponent, RenderMaterial, RenderShapeTriang
 
 from preshape.geometry.pose import quaternion_from_pose
 from sim.objects.object_model import ObjectModel, VisualPart
+from sim.scene_systems import has_physics, has_renderer
 
 ROUGHNESS = 0.6
 SPECULAR = 0.3
-
-
-@dataclass(frozen=True)
-class ContactSettings:
-    """How PhysX treats the object.
-
-    Args:
-        restitution: 0 does not bounce.
-        solver_position_iterations, solver_velocity_iterations: per step; grasps by several fingers want 20 or more.
-        contact_offset_m: distance at which PhysX begins to make contacts.
-    """
-
-    restitution: float = 0.0
-    solver_position_iterations: int = 25
-    solver_velocity_iterations: int = 1
-    contact_offset_m: float = 0.002
+COOKING_SCALE = 10.0
+"""PhysX drops vertices within 0.7 mm of a plane when it cooks a hull; cooked larger, it keeps the shape."""
 
 
 def add_object(
-    scene: sapien.Scene,
-    model: ObjectModel,
-    T_world_object: Float[np.ndarray, "4 4"],
-    contact: ContactSettings | None = None,
-    *,
-    visible: bool = True,
+    scene: sapien.Scene, model: ObjectModel, T_world_object: Float[np.ndarray, "4 4"]
 ) -> sapien.Entity:
     """Add the object to the scene at a pose.
 
-    `contact` None makes it an image only, without physics. `visible` False leaves out what the camera sees.
+    It gets a body if the scene has physics, under PhysX's current body and shape settings, and is drawn if the
+    scene can be looked at.
     """
     entity = sapien.Entity()
     entity.set_name(model.object_id)
-    if contact is not None:
-        entity.add_component(rigid_body(model, contact))
-    if visible:
+    if has_physics(scene):
+        entity.add_component(rigid_body(model))
+    if has_renderer(scene):
         entity.add_component(render_body(model))
     entity.set_pose(sapien_pose(T_world_object))
     scene.add_entity(entity)
     return entity
 
 
-def rigid_body(model: ObjectModel, contact: ContactSettings) -> PhysxRigidDynamicComponent:
+def rigid_body(model: ObjectModel) -> PhysxRigidDynamicComponent:
     """The object's body; PhysX takes mass and inertia from the parts at the model's density."""
-    material = PhysxMaterial(model.friction, model.friction, contact.restitution)
+    material = PhysxMaterial(model.friction, model.friction, 0.0)
     body = PhysxRigidDynamicComponent()
     for vertices in model.collision_parts:
-        shape = PhysxCollisionShapeConvexMesh(vertices.astype(np.float32), np.ones(3, np.float32), material)
+        shape = PhysxCollisionShapeConvexMesh(
+            (vertices * COOKING_SCALE).astype(np.float32), np.full(3, 1 / COOKING_SCALE, np.float32), material
+        )
         shape.set_density(model.density)
-        shape.set_contact_offset(contact.contact_offset_m)
         body.attach(shape)
-    body.set_solver_position_iterations(contact.solver_position_iterations)
-    body.set_solver_velocity_iterations(contact.solver_velocity_iterations)
     return body
 
 
