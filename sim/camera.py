@@ -17,7 +17,7 @@ T_OPTICAL_SAPIEN = np.array([[0.0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 0], [0, 0
 def add_camera(scene: sapien.Scene, camera: Camera) -> RenderCameraComponent:
     """Add a camera to a scene that can be looked at."""
     lens = RenderCameraComponent(camera.width, camera.height)
-    # SAPIEN measures the principal point from the image's corner, half a pixel before the first pixel's centre.
+    # SAPIEN counts from the image's corner, half a pixel before the first pixel's centre.
     lens.set_perspective_parameters(
         NEAR_M, FAR_M, camera.fx, camera.fy, camera.cx + 0.5, camera.cy + 0.5, 0.0
     )

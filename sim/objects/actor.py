@@ -21,8 +21,8 @@ def add_object(
 ) -> sapien.Entity:
     """Add the object to the scene at a pose.
 
-    It gets a body if the scene has physics, under PhysX's current body and shape settings, and is drawn if the
-    scene can be looked at.
+    It gets a body if the scene has physics, under PhysX's current body and shape settings, and is drawn if
+    the scene can be looked at.
     """
     entity = sapien.Entity()
     entity.set_name(model.object_id)

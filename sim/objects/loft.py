@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
@@ -25,8 +26,8 @@ class Station:
     Args:
         z: height (m).
         width, depth: full size along x and y (m).
-        roundness: exponent n of the superellipse |2x/width|^n + |2y/depth|^n = 1: 2 is an ellipse, 4 a rounded
-            rectangle, infinity a rectangle.
+        roundness: exponent n of the superellipse |2x/width|^n + |2y/depth|^n = 1: 2 is an ellipse, 4 a
+            rounded rectangle, infinity a rectangle.
         colour: linear RGB of the wall from here to the next station, and of the lid of the last.
         offset_y: centre of the cross-section along y (m).
     """
@@ -39,7 +40,7 @@ class Station:
     offset_y: float = 0.0
 
     def ring(self, angles: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n 3"]:
-        """Points (m) of the outline in the given directions (rad), seen from its centre in units of its size."""
+        """Points (m) of the outline in the given directions (rad) from its centre, in units of its size."""
         x, y = np.cos(angles), np.sin(angles)
         if math.isinf(self.roundness):
             reach = np.maximum(np.abs(x), np.abs(y))
@@ -58,7 +59,7 @@ Loft = Sequence[Station]
 def convex_parts(loft: Loft) -> list[Float[np.ndarray, "_ 3"]]:
     """Vertices of as few convex parts as fill the loft."""
     rings = [_outline(station) for station in loft]
-    slices = [(a, b) for a, b in zip(rings, rings[1:], strict=False) if b[0, 2] > a[0, 2]]
+    slices = [(a, b) for a, b in pairwise(rings) if b[0, 2] > a[0, 2]]
     parts: list[list[Float[np.ndarray, "_ 3"]]] = []
     filled = 0.0
     for bottom, top in slices:

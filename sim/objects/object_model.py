@@ -40,8 +40,8 @@ class ObjectModel:
     """A rigid object of uniform density.
 
     The object's frame has its origin at the centre of mass, so that the height of the origin is what a lift
-    raises, however the object turns in the hand. In the identity rotation z points up and the object stands on
-    its predetermined support surface (paper, section 4.1), which lies at z = -`standing_height_m`.
+    raises, however the object turns in the hand. In the identity rotation z points up and the object stands
+    on its predetermined support surface (paper, section 4.1), which lies at z = -`standing_height_m`.
 
     Args:
         object_id: name in its object set.
@@ -127,13 +127,13 @@ def volume_and_centroid(
     parts: Sequence[Float[np.ndarray, "_ 3"]],
 ) -> tuple[float, Float[np.ndarray, "3"]]:
     """Volume (m3) and centre of mass (m) of the convex hulls of the parts, at uniform density."""
-    volumes, moments = 0.0, np.zeros(3)
+    volume, moments = 0.0, np.zeros(3)
     for vertices in parts:
         hull = ConvexHull(vertices)
         inside = vertices[hull.vertices].mean(axis=0)
         triangles = vertices[hull.simplices] - inside
-        # Qhull's triangles face either way: a cone from a point inside has a positive volume whatever its facing.
+        # Qhull's triangles face either way, but every cone from a point inside is part of the volume.
         cones = np.abs(np.linalg.det(triangles)) / 6
-        volumes += float(cones.sum())
+        volume += float(cones.sum())
         moments += cones @ (triangles.sum(axis=1) / 4 + inside)
-    return volumes, moments / volumes
+    return volume, moments / volume

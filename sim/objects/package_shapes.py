@@ -3,8 +3,8 @@
 A profile is a list of lofts. A loft is a list of rows (height, width, depth, roundness, material[, offset]):
 height as a fraction of the object's height; width (x) and depth (y) as fractions of its width and depth;
 roundness as in `loft.Station`; material is a key of the object's colours and paints the wall above the row;
-offset moves the cross-section along y, as a fraction of the depth. Rows written as "round" have the same
-diameter along x and y, in fractions of the smaller of width and depth: caps and necks are round on oval bottles.
+offset moves the cross-section along y, as a fraction of the depth. A row
+without a depth is round, its diameter a fraction of the smaller of width and depth: oval bottles have round caps.
 """
 
 import math
@@ -26,8 +26,8 @@ class Row:
 
     Args:
         height: fraction of the object's height.
-        width, depth: fractions of its size along x and y; `depth` None means a round section whose diameter is
-            `width` times the smaller of the two sizes.
+        width, depth: fractions of its size along x and y; `depth` None means a round section whose
+            diameter is `width` times the smaller of the two sizes.
         roundness: as in `Station`.
         material: key of the object's colours; paints the wall from here upwards.
         offset: centre along y, as a fraction of the size along y.
