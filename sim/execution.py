@@ -1,0 +1,139 @@
+"""Executing one planned grasp: approach, close, lift, hold; and measuring what happened."""
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+from jaxtyping import Float
+
+from preshape.data.trial import GraspType
+from sim.arm.trajectory import GraspMotion, JointTrajectory
+from sim.closing import ClosingController, ClosingSettings
+from sim.outcome import Measurements
+from sim.physics import PhysicsSettings
+from sim.simulated_robot import SimulatedRobot
+from sim.world import World
+
+
+@dataclass(frozen=True)
+class ExecutionSettings:
+    """How a grasp is executed.
+
+    Args:
+        control_period_s: time between two updates of the drives' targets.
+        settle_time_s: pause between approach and closing, and again between closing and lifting.
+        hold_time_s: how long the hand holds the object up before the trial is judged.
+        closing: how the hand closes.
+    """
+
+    control_period_s: float = 1 / 60
+    settle_time_s: float = 0.25
+    hold_time_s: float = 1.0
+    closing: ClosingSettings = field(default_factory=ClosingSettings)
+
+
+@dataclass(frozen=True, eq=False)
+class Execution:
+    """What came of a grasp.
+
+    Args:
+        T_world_palm: the palm pose that the robot reached before it closed the hand.
+        hand: joint angles of the hand at that moment (rad).
+        measured: what the label is made of.
+    """
+
+    T_world_palm: Float[np.ndarray, "4 4"]
+    hand: Float[np.ndarray, "16"]
+    measured: Measurements
+
+
+class Spectator(Protocol):
+    """Someone who looks on: is shown the world after every control period."""
+
+    def __call__(self, world: World, phase: str) -> None: ...
+
+
+class GraspExecutor:
+    """Executes one grasp in one world.
+
+    The collision-free transit is not simulated: the robot starts at rest before the straight approach, in the
+    preshape. From there on everything is physics.
+
+    Args:
+        world: a fresh world with a robot.
+        physics, settings: time steps, control rate, closing.
+        spectator: who looks on, if anyone.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        physics: PhysicsSettings,
+        settings: ExecutionSettings,
+        spectator: Spectator | None = None,
+    ) -> None:
+        if world.robot is None:
+            raise ValueError("a grasp needs a world with a robot")
+        self._world, self._robot = world, world.robot
+        self._settings, self._spectator = settings, spectator
+        self._steps = round(settings.control_period_s / physics.timestep_s)
+        self._period_s = self._steps * physics.timestep_s
+        self._highest_m = -np.inf
+
+    def execute(self, motion: GraspMotion, preshape: Float[np.ndarray, "16"], grasp_type: GraspType) -> Execution:
+        """Execute a grasp with the hand in its preshape (joint angles, rad)."""
+        resting_height_m = self._world.object_height_m
+        self._show_transit(motion.transit, preshape)
+        self._robot.place(motion.approach.positions[0], preshape)
+        self._follow(motion.approach, "approach")
+        self._wait(self._settings.settle_time_s, "approach")
+        T_world_palm, hand = self._robot.palm_pose, self._robot.hand_positions
+        self._close(preshape, grasp_type)
+        self._highest_m = -np.inf
+        self._follow(motion.lift, "lift")
+        self._wait(self._settings.hold_time_s, "hold")
+        return Execution(T_world_palm, hand, self._measure(resting_height_m, T_world_palm))
+
+    def _show_transit(self, transit: JointTrajectory, preshape: Float[np.ndarray, "16"]) -> None:
+        """Without a spectator nothing happens: a pose that is not stepped leaves no trace in the physics."""
+        if self._spectator is not None:
+            for time_s in np.arange(0.0, transit.duration_s, self._period_s):
+                self._robot.place(transit.sample(time_s)[0], preshape)
+                self._spectator(self._world, "transit")
+
+    def _follow(self, trajectory: JointTrajectory, phase: str) -> None:
+        for time_s in np.arange(self._period_s, trajectory.duration_s + self._period_s, self._period_s):
+            self._robot.drive_arm(*trajectory.sample(time_s))
+            self._advance(phase)
+
+    def _wait(self, duration_s: float, phase: str) -> None:
+        for _ in range(round(duration_s / self._period_s)):
+            self._advance(phase)
+
+    def _close(self, preshape: Float[np.ndarray, "16"], grasp_type: GraspType) -> None:
+        robot = self._robot
+        controller = ClosingController(
+            robot.fingers, grasp_type, preshape, robot.robot.hand_upper_limits, self._settings.closing
+        )
+        while not controller.done:
+            robot.drive_hand(controller.update(robot.hand_positions, robot.hand_velocities, self._period_s))
+            self._advance("close")
+        self._wait(self._settings.settle_time_s, "close")
+
+    def _advance(self, phase: str) -> None:
+        for _ in range(self._steps):
+            self._world.step()
+        self._highest_m = max(self._highest_m, self._world.object_height_m)
+        if self._spectator is not None:
+            self._spectator(self._world, phase)
+
+    def _measure(self, resting_height_m: float, T_world_palm: Float[np.ndarray, "4 4"]) -> Measurements:
+        world = self._world
+        return Measurements(
+            final_height_m=world.object_height_m - resting_height_m,
+            highest_m=self._highest_m - resting_height_m,
+            palm_rise_m=float(self._robot.palm_pose[2, 3] - T_world_palm[2, 3]),
+            relative_speed_m_s=float(np.linalg.norm(world.object_velocity - self._robot.palm_velocity)),
+            touches_hand=world.object_touches_hand,
+            touches_support=world.object_touches_support,
+        )

@@ -1,0 +1,139 @@
+"""A trial from its planned grasp to its label."""
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+from jaxtyping import Float
+
+from preshape.data.scene import Scene
+from preshape.data.trial import Face, Trial, TrialOutcome
+from preshape.geometry.pose import invert_pose, transform_points
+from sim.arm.planner import ArmPlanner
+from sim.arm.trajectory import GraspMotion, MotionFailure
+from sim.execution import Execution, ExecutionSettings, GraspExecutor, Spectator
+from sim.objects.object_model import ObjectModel, ObjectSet
+from sim.outcome import OutcomeSettings, judge
+from sim.physics import PhysicsSettings
+from sim.robots.description import RobotDescription
+from sim.table import TableSettings
+from sim.world import World
+
+
+@dataclass(frozen=True, eq=False)
+class PlannedGrasp:
+    """A grasp that someone wants tried.
+
+    Args:
+        trial_id: number of the trial; with the run's seed it decides everything random in it.
+        planner: who planned it.
+        face: face that the initial grasp aimed at; decides how the hand closes.
+        initial, planned: theta before and after planning.
+        success_prob: predicted for `planned`; NaN if nothing was predicted.
+        seed: seed of the trial.
+        planning_s: seconds that planning the grasp itself took.
+    """
+
+    trial_id: int
+    planner: str
+    face: Face
+    initial: Float[np.ndarray, "d"]
+    planned: Float[np.ndarray, "d"]
+    success_prob: float
+    seed: int
+    planning_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class TrialSettings:
+    """Everything that decides a trial's label beside the grasp."""
+
+    physics: PhysicsSettings = field(default_factory=PhysicsSettings)
+    execution: ExecutionSettings = field(default_factory=ExecutionSettings)
+    outcome: OutcomeSettings = field(default_factory=OutcomeSettings)
+
+
+class TrialRunner:
+    """Tries grasps, each in a fresh world.
+
+    Args:
+        robot: who grasps; its grasp space says what theta means.
+        objects, table: what there is to grasp.
+        arm: plans the arm's motions.
+        settings: physics, controller and label.
+    """
+
+    def __init__(
+        self,
+        robot: RobotDescription,
+        objects: ObjectSet,
+        table: TableSettings,
+        arm: ArmPlanner,
+        settings: TrialSettings,
+    ) -> None:
+        self._robot, self._space = robot, robot.grasp_space
+        self._objects, self._table = objects, table
+        self._arm, self._settings = arm, settings
+
+    def run(self, scene: Scene, grasp: PlannedGrasp, spectator: Spectator | None = None) -> Trial:
+        """Try one grasp; the same scene and grasp give the same trial to the bit, timings aside."""
+        model = self._objects.load(scene.object_id)
+        start = time.perf_counter()
+        motion = self.plan_motion(scene, grasp, model)
+        planned = time.perf_counter()
+        if isinstance(motion, MotionFailure):
+            return self._row(scene, grasp, motion.outcome, None, planning_s=planned - start)
+        world = World(
+            self._table, self._settings.physics, model, scene.T_world_object, rendered=spectator is not None
+        ).with_robot(self._robot)
+        built = time.perf_counter()
+        executor = GraspExecutor(world, self._settings.physics, self._settings.execution, spectator)
+        preshape = self._robot.preshape(self._space.joints(grasp.planned))
+        execution = executor.execute(motion, preshape, grasp.face.grasp_type)
+        done = time.perf_counter()
+        outcome = judge(execution.measured, self._settings.outcome)
+        times = {"planning_s": planned - start, "scene_s": built - planned, "physics_s": done - built}
+        return self._row(scene, grasp, outcome, execution, **times)
+
+    def plan_motion(self, scene: Scene, grasp: PlannedGrasp, model: ObjectModel) -> GraspMotion | MotionFailure:
+        """The arm's motion to a planned grasp, or why there is none."""
+        T_world_palm = scene.camera.T_world_camera @ self._space.palm_pose(grasp.planned)
+        parts = tuple(transform_points(scene.T_world_object, part) for part in model.collision_parts)
+        preshape = self._robot.preshape(self._space.joints(grasp.planned))
+        return self._arm.plan_grasp(T_world_palm, preshape, parts, np.random.default_rng(grasp.seed))
+
+    def _row(
+        self,
+        scene: Scene,
+        grasp: PlannedGrasp,
+        outcome: TrialOutcome,
+        execution: Execution | None,
+        *,
+        planning_s: float,
+        scene_s: float = 0.0,
+        physics_s: float = 0.0,
+    ) -> Trial:
+        return Trial(
+            trial_id=grasp.trial_id,
+            scene_id=scene.scene_id,
+            object_id=scene.object_id,
+            planner=grasp.planner,
+            face=grasp.face,
+            initial=grasp.initial,
+            planned=grasp.planned,
+            reached=self._reached(scene, execution),
+            outcome=outcome,
+            lift_height_m=execution.measured.final_height_m if execution else float("nan"),
+            success_prob=grasp.success_prob,
+            seed=grasp.seed,
+            scene_s=scene_s,
+            planning_s=grasp.planning_s + planning_s,
+            physics_s=physics_s,
+            rendering_s=0.0,
+        )
+
+    def _reached(self, scene: Scene, execution: Execution | None) -> Float[np.ndarray, "d"]:
+        if execution is None:
+            return np.full(self._space.dim, np.nan)
+        T_camera_palm = invert_pose(scene.camera.T_world_camera) @ execution.T_world_palm
+        return self._space.theta(T_camera_palm, self._robot.preshape_joints(execution.hand))
