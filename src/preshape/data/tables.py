@@ -106,7 +106,7 @@ def read_scenes(path: str | Path) -> SceneTable:
 def write_trials(path: str | Path, table: TrialTable) -> None:
     """Write a table of trials atomically; raises InputError if the place cannot be written to."""
     types = _trial_columns(table.space)
-    arrays = {name: pa.array(table.rows[name].to_numpy(), types[name]) for name in SCALARS}
+    arrays = {name: pa.array(table.rows[name].tolist(), types[name]) for name in SCALARS}
     arrays |= {f"theta_{name}": vectors(getattr(table, name)) for name in THETAS}
     about = {"origin": asdict(table.origin), "grasp_space": _describe(table.space)}
     write_table(path, TRIALS, arrays, about)
