@@ -1,0 +1,53 @@
+"""Confidence intervals: Wilson for rates, bootstrap for areas under the ROC curve."""
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+from scipy.stats import binomtest
+
+CONFIDENCE = 0.95
+
+
+def wilson(successes: int, n: int, confidence: float = CONFIDENCE) -> tuple[float, float]:
+    """Wilson score interval (low, high) of a success rate; (0, 1) if nothing was tried."""
+    if n == 0:
+        return 0.0, 1.0
+    interval = binomtest(successes, n).proportion_ci(confidence, method="wilson")
+    return float(interval.low), float(interval.high)
+
+
+def bootstrap_auc(
+    labels: Bool[np.ndarray, "n"],
+    scores: Float[np.ndarray, "n"],
+    rng: np.random.Generator,
+    *,
+    groups: Int[np.ndarray, "n"] | None = None,
+    replicates: int = 2000,
+    confidence: float = CONFIDENCE,
+) -> tuple[float, float]:
+    """Percentile bootstrap interval (low, high) of the area under the ROC curve.
+
+    Args:
+        labels, scores: outcome and predicted score (any monotone function of the probability) of each trial.
+        rng: source of the resampling.
+        groups: scene of each trial. Trials of one scene are alike, so whole scenes are resampled; without
+            groups, single trials are.
+        replicates: number of resampled data sets; those that miss one of the classes are left out.
+        confidence: probability mass of the interval.
+
+    Returns:
+        (NaN, NaN) if the trials are all of one class.
+    """
+    if labels.all() or not labels.any():
+        return float("nan"), float("nan")
+    members = np.unique(np.arange(len(labels)) if groups is None else groups, return_inverse=True)[1]
+    n_groups = int(members.max()) + 1
+    drawn = rng.multinomial(n_groups, np.full(n_groups, 1 / n_groups), size=replicates)
+    # AUC is the share of (positive, negative) pairs in the right order; resampling only weights the pairs.
+    weights = drawn[:, members].astype(np.float32)
+    positive, negative = weights[:, labels], weights[:, ~labels]
+    above = np.sign(scores[labels][:, None] - scores[~labels][None, :]).astype(np.float32) / 2 + 0.5
+    ordered = ((positive @ above) * negative).sum(axis=1, dtype=np.float64)
+    pairs = positive.sum(axis=1, dtype=np.float64) * negative.sum(axis=1, dtype=np.float64)
+    tail = (1 - confidence) / 2
+    low, high = np.quantile(ordered[pairs > 0] / pairs[pairs > 0], [tail, 1 - tail])
+    return float(low), float(high)

@@ -1,0 +1,98 @@
+"""How well predicted success probabilities tell grasps that lift from grasps that fail."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import torch
+from jaxtyping import Bool, Float, Int
+from sklearn.metrics import accuracy_score, average_precision_score, brier_score_loss, f1_score, roc_auc_score
+from torchmetrics.functional.classification import binary_calibration_error
+
+from preshape.evaluation.intervals import bootstrap_auc
+
+PAPER_THRESHOLD = 0.4
+"""Success probability above which a grasp counts as predicted to succeed (paper, section 4.2)."""
+CALIBRATION_BINS = 10
+
+
+@dataclass(frozen=True)
+class ClassificationMetrics:
+    """Figures of one test set.
+
+    Args:
+        n, positives: number of trials and of those that lifted.
+        auc, auc_low, auc_high: area under the ROC curve with its 95 % bootstrap interval; NaN for one class.
+        average_precision: area under the precision-recall curve; NaN without positives.
+        accuracy, f1: at `threshold`.
+        brier: mean squared error of the probability.
+        ece: expected calibration error over ten bins of equal width.
+        threshold: success probability above which success is predicted.
+    """
+
+    n: int
+    positives: int
+    auc: float
+    auc_low: float
+    auc_high: float
+    average_precision: float
+    accuracy: float
+    f1: float
+    brier: float
+    ece: float
+    threshold: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """The figures as they stand in result files, the AUC with its interval as `{value, low, high}`."""
+        return {
+            "n": self.n,
+            "positives": self.positives,
+            "auc": {"value": self.auc, "low": self.auc_low, "high": self.auc_high},
+            "ap": self.average_precision,
+            "accuracy": self.accuracy,
+            "f1": self.f1,
+            "brier": self.brier,
+            "ece": self.ece,
+            "threshold": self.threshold,
+        }
+
+
+def classification_metrics(
+    labels: Bool[np.ndarray, "n"],
+    success_prob: Float[np.ndarray, "n"],
+    *,
+    rng: np.random.Generator,
+    groups: Int[np.ndarray, "n"] | None = None,
+    threshold: float = PAPER_THRESHOLD,
+) -> ClassificationMetrics:
+    """Metrics of predicted success probabilities against outcomes.
+
+    Args:
+        labels: whether each trial lifted.
+        success_prob: predicted probability of it.
+        rng: source of the bootstrap's resampling.
+        groups: scene of each trial, resampled as a whole.
+        threshold: success probability above which success is predicted.
+    """
+    predicted = success_prob > threshold
+    both_classes = bool(labels.any() and not labels.all())
+    low, high = bootstrap_auc(labels, success_prob, rng, groups=groups)
+    ece = binary_calibration_error(
+        torch.as_tensor(success_prob), torch.as_tensor(labels).int(), n_bins=CALIBRATION_BINS, norm="l1"
+    )
+    return ClassificationMetrics(
+        n=len(labels),
+        positives=int(labels.sum()),
+        auc=float(roc_auc_score(labels, success_prob)) if both_classes else math.nan,
+        auc_low=low,
+        auc_high=high,
+        average_precision=float(average_precision_score(labels, success_prob))
+        if labels.any()
+        else float("nan"),
+        accuracy=float(accuracy_score(labels, predicted)),
+        f1=float(f1_score(labels, predicted, zero_division=0.0)),
+        brier=float(brier_score_loss(labels, success_prob, pos_label=True)),
+        ece=float(ece),
+        threshold=threshold,
+    )
