@@ -97,8 +97,9 @@ class ClosingController:
 
     def _advance(self, finger: _Finger, positions: Float[np.ndarray, "16"], period_s: float) -> None:
         joints = finger.joints
-        ahead = np.minimum(self.targets[joints] + finger.speed * period_s, positions[joints] + self.settings.lead_rad)
-        self.targets[joints] = np.minimum(ahead, self.upper[joints])
+        wanted = self.targets[joints] + finger.speed * period_s
+        farthest = np.minimum(positions[joints] + self.settings.lead_rad, self.upper[joints])
+        self.targets[joints] = np.minimum(wanted, farthest)
 
     def _detect_stop(self, finger: _Finger, velocities: Float[np.ndarray, "16"], period_s: float) -> None:
         still = np.all(np.abs(velocities[finger.joints]) < self.settings.stopped_speed_rad_s)

@@ -11,7 +11,6 @@ from sim.arm.trajectory import GraspMotion, JointTrajectory
 from sim.closing import ClosingController, ClosingSettings
 from sim.outcome import Measurements
 from sim.physics import PhysicsSettings
-from sim.simulated_robot import SimulatedRobot
 from sim.world import World
 
 
@@ -80,7 +79,9 @@ class GraspExecutor:
         self._period_s = self._steps * physics.timestep_s
         self._highest_m = -np.inf
 
-    def execute(self, motion: GraspMotion, preshape: Float[np.ndarray, "16"], grasp_type: GraspType) -> Execution:
+    def execute(
+        self, motion: GraspMotion, preshape: Float[np.ndarray, "16"], grasp_type: GraspType
+    ) -> Execution:
         """Execute a grasp with the hand in its preshape (joint angles, rad)."""
         resting_height_m = self._world.object_height_m
         self._show_transit(motion.transit, preshape)

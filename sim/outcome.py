@@ -29,7 +29,8 @@ class Measurements:
     """What the simulator measured while and after the hand lifted.
 
     Args:
-        final_height_m, highest_m: rise of the object's centre of mass over its resting height, at the end and at most.
+        final_height_m, highest_m: rise of the object's centre of mass over its resting height: at the end, at
+            most.
         palm_rise_m: how far the palm was lifted.
         relative_speed_m_s: speed of the object relative to the palm at the end.
         touches_hand, touches_support: contacts of the object at the end; support is the table or the floor.

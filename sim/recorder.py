@@ -64,7 +64,8 @@ class Recorder:
     def save_animation(self, path: Path, caption: str) -> None:
         """Write the pictures as an endless WebP animation with the phase and a caption on each."""
         pictures = [
-            annotated(frame, f"{phase} - {caption}") for frame, phase in zip(self.frames, self.phases, strict=True)
+            annotated(frame, f"{phase} - {caption}")
+            for frame, phase in zip(self.frames, self.phases, strict=True)
         ]
         durations = [round(1000 / self._settings.frames_per_s)] * (len(pictures) - 1) + [1500]
         with atomic_path(path) as temporary:

@@ -18,7 +18,7 @@ class PlacementSettings:
     """Where objects are put (paper, section 4.1), and when they are at rest.
 
     Args:
-        square_m: side of the square around the table's centre in which the origin is uniform; the yaw is, too.
+        square_m: side of the square around the table's centre in which the origin is uniform, as the yaw is.
         drop_height_m: height from which the object is let go.
         rest_time_s: how long it must have been slow to be at rest.
         max_time_s: when to give up.
@@ -40,7 +40,7 @@ def place_object(
     placement: PlacementSettings,
     rng: np.random.Generator,
 ) -> Float[np.ndarray, "4 4"] | None:
-    """T_world_object of an object at rest at a random place; None if it would not come to rest on the table."""
+    """T_world_object of an object at rest at a random place; None if it does not come to rest there."""
     offset = rng.uniform(-placement.square_m / 2, placement.square_m / 2, size=2)
     yaw = rng.uniform(-np.pi, np.pi)
     height = table.top_m + model.standing_height_m + placement.drop_height_m

@@ -9,7 +9,6 @@ from jaxtyping import Float
 from sapien.wrapper.articulation_builder import ArticulationBuilder
 from sapien.wrapper.urdf_loader import URDFLoader
 
-from preshape.geometry.pose import make_pose
 from sim.robots.description import RobotDescription
 from sim.scene_systems import has_renderer
 

@@ -95,7 +95,9 @@ class TrialRunner:
         times = {"planning_s": planned - start, "scene_s": built - planned, "physics_s": done - built}
         return self._row(scene, grasp, outcome, execution, **times)
 
-    def plan_motion(self, scene: Scene, grasp: PlannedGrasp, model: ObjectModel) -> GraspMotion | MotionFailure:
+    def plan_motion(
+        self, scene: Scene, grasp: PlannedGrasp, model: ObjectModel
+    ) -> GraspMotion | MotionFailure:
         """The arm's motion to a planned grasp, or why there is none."""
         T_world_palm = scene.camera.T_world_camera @ self._space.palm_pose(grasp.planned)
         parts = tuple(transform_points(scene.T_world_object, part) for part in model.collision_parts)

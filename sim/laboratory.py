@@ -1,0 +1,78 @@
+"""The simulated laboratory: everything that collecting and evaluating share."""
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from preshape.data.scene import Scene, SceneRenderer
+from preshape.data.trial_table import TableOrigin
+from preshape.grasps.heuristic import HeuristicSettings, InitialGrasp, heuristic_grasps
+from preshape.grasps.space import GraspSpace
+from preshape.perception.observation import Observation
+from preshape.perception.segmentation import SegmentationSettings, SegmentedObject, segment
+from sim.scene_maker import SceneMaker
+from sim.trial import TrialRunner
+
+
+@dataclass(frozen=True, eq=False)
+class SceneView:
+    """What the robot sees of a scene, and where it would grasp by heuristic.
+
+    Args:
+        observation: the RGB-D view.
+        segmented: the object in it.
+        initial: heuristic initial grasps.
+    """
+
+    observation: Observation
+    segmented: SegmentedObject
+    initial: tuple[InitialGrasp, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Laboratory:
+    """Makes scenes, looks at them and tries grasps on them.
+
+    Args:
+        origin: names of the robot, the objects and the camera, for the tables.
+        space: what theta means.
+        scenes: makes scenes.
+        renderer: makes their images.
+        segmentation, heuristic: how the robot finds the object and its initial grasps.
+        runner: tries grasps.
+    """
+
+    origin: TableOrigin
+    space: GraspSpace
+    scenes: SceneMaker
+    renderer: SceneRenderer
+    heuristic: HeuristicSettings
+    runner: TrialRunner
+    segmentation: SegmentationSettings = field(default_factory=SegmentationSettings)
+
+    def view(self, scene: Scene) -> SceneView:
+        """Look at a scene; the same scene gives the same view.
+
+        Raises:
+            InputError: if no object can be made out in the view.
+        """
+        observation = self.renderer(scene)
+        segmented = segment(observation, self.segmentation)
+        rng = np.random.default_rng([scene.seed, GRASP_STREAM])
+        grasps = heuristic_grasps(segmented, self.space, self.heuristic, scene.camera, rng)
+        return SceneView(observation, segmented, tuple(grasps))
+
+
+GRASP_STREAM = 1
+"""Keeps the random numbers of initial grasps apart from the sensor's, which start from the same seed."""
+
+LaboratoryFactory = Callable[[], Laboratory]
+"""Builds the laboratory; each worker process builds its own."""
+
+
+def trial_seed(run_seed: int, scene_id: int, grasp: int) -> int:
+    """Seed of the trial of one initial grasp of one scene, for whichever planner tries it."""
+    digest = hashlib.sha256(f"{run_seed}/{scene_id}/{grasp}".encode()).digest()
+    return int.from_bytes(digest[:8], "big") >> 1

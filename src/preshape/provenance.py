@@ -1,0 +1,59 @@
+"""Where a result comes from: the command, the code, the versions, the seed, the date."""
+
+import subprocess
+import sys
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from preshape.paths import project_root
+
+NAMED_PACKAGES = ("torch", "lightning", "numpy", "sapien", "open3d", "ompl", "pin", "coal", "toppra", "mlflow")
+"""Packages whose version can change a number."""
+
+
+def provenance(seed: int) -> dict[str, Any]:
+    """What every result file starts with."""
+    return {
+        "command": command_line(),
+        "git_revision": git_revision(),
+        "versions": package_versions(),
+        "seed": seed,
+        "date": datetime.now(UTC).date().isoformat(),
+    }
+
+
+def command_line() -> str:
+    """The command as it can be typed again from the project's folder."""
+    script = Path(sys.argv[0]).resolve()
+    root = project_root()
+    name = script.relative_to(root) if script.is_relative_to(root) else script.name
+    return " ".join(("python", str(name), *sys.argv[1:]))
+
+
+def git_revision() -> str:
+    """Commit of the code, with `-dirty` if tracked files differ from it; `unknown` outside a git checkout."""
+    try:
+        answer = subprocess.run(
+            ["git", "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"],
+            cwd=project_root(),
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=20,
+        )
+    except (OSError, subprocess.SubprocessError):
+        return "unknown"
+    return answer.stdout.strip()
+
+
+def package_versions() -> dict[str, str]:
+    """Versions of Python and of the packages that can change a number, where they are installed."""
+    versions = {"python": ".".join(map(str, sys.version_info[:3]))}
+    for name in NAMED_PACKAGES:
+        try:
+            versions[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return versions

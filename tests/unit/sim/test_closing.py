@@ -1,0 +1,56 @@
+"""The closing controller moves the joints that the paper names and lets each finger stop by itself."""
+
+import numpy as np
+import pytest
+
+from preshape.data.trial import GraspType
+from sim.closing import ClosingController, ClosingSettings
+
+FINGERS = {"index": (0, 1, 2, 3), "middle": (4, 5, 6, 7), "ring": (8, 9, 10, 11), "thumb": (12, 13, 14, 15)}
+PERIOD_S = 1 / 60
+SETTINGS = ClosingSettings()
+
+
+def controller(grasp_type: GraspType) -> ClosingController:
+    return ClosingController(FINGERS, grasp_type, np.zeros(16), np.full(16, 1.6), SETTINGS)
+
+
+@pytest.mark.parametrize(
+    ("grasp_type", "closing"),
+    [(GraspType.SIDE, {1, 2, 3, 5, 6, 7, 9, 10, 11, 14, 15}), (GraspType.OVERHEAD, {1, 5, 9, 14})],
+)
+def test_only_the_joints_of_the_rule_close(grasp_type: GraspType, closing: set[int]) -> None:
+    hand = controller(grasp_type)
+    targets = hand.update(np.zeros(16), np.zeros(16), PERIOD_S)
+    assert set(np.flatnonzero(targets)) == closing
+
+
+def test_free_fingers_close_at_constant_speed_up_to_their_limits() -> None:
+    hand = controller(GraspType.SIDE)
+    positions, before = np.zeros(16), np.zeros(16)
+    while not hand.done:
+        speeds = (positions - before) / PERIOD_S
+        before, positions = positions, hand.update(positions, speeds, PERIOD_S).copy()
+        assert np.all(speeds <= SETTINGS.thumb_speed_rad_s + 1e-9)
+    assert hand.elapsed_s == pytest.approx(1.6 / SETTINGS.finger_speed_rad_s, abs=0.5)
+    assert np.all(positions <= 1.6)
+
+
+def test_a_blocked_finger_stops_and_the_others_go_on() -> None:
+    hand = controller(GraspType.SIDE)
+    positions = np.zeros(16)
+    before = positions
+    for _ in range(60):
+        velocities = (positions - before) / PERIOD_S
+        before, positions = positions, hand.update(positions, velocities, PERIOD_S).copy()
+        positions[[1, 2, 3]] = np.minimum(positions[[1, 2, 3]], 0.1)
+    assert np.all(hand.targets[[1, 2, 3]] <= 0.1 + SETTINGS.lead_rad + 1e-12)
+    assert hand.targets[5] > hand.targets[1]
+    assert not hand.done
+
+
+def test_a_finger_that_never_stops_does_not_hold_the_trial_up() -> None:
+    hand = controller(GraspType.SIDE)
+    while not hand.done:
+        hand.update(np.zeros(16), np.ones(16), PERIOD_S)
+    assert hand.elapsed_s == pytest.approx(SETTINGS.max_time_s, abs=2 * PERIOD_S)
