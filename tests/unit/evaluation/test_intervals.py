@@ -34,10 +34,10 @@ def rng() -> np.random.Generator:
 def test_bootstrap_agrees_with_resampling_one_by_one(rng: np.random.Generator) -> None:
     labels = rng.random(120) < 0.3
     scores = np.round(labels + rng.normal(size=120), 1)  # rounded, so that there are ties
-    draws = (rng.integers(0, 120, 120) for _ in range(1500))
+    draws = (rng.integers(0, 120, 120) for _ in range(500))
     aucs = [roc_auc_score(labels[draw], scores[draw]) for draw in draws]
     expected = tuple(np.quantile(aucs, [0.025, 0.975]))
-    assert bootstrap_auc(labels, scores, rng, replicates=1500) == pytest.approx(expected, abs=0.015)
+    assert bootstrap_auc(labels, scores, rng, replicates=1500) == pytest.approx(expected, abs=0.025)
 
 
 def test_repeating_every_trial_within_its_group_adds_no_certainty(rng: np.random.Generator) -> None:
