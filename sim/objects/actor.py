@@ -66,6 +66,7 @@ def _render_shape(part: VisualPart) -> RenderShapeTriangleMesh:
     uvs = np.zeros((len(part.vertices), 2), np.float32) if part.uvs is None else part.uvs
     if part.texture is not None:
         opaque = np.full((*part.texture.shape[:2], 1), 255, np.uint8)
-        pixels = np.ascontiguousarray(np.concatenate((part.texture, opaque), axis=2))
+        # The first row of an array is where v is 0 for SAPIEN.
+        pixels = np.ascontiguousarray(np.flipud(np.concatenate((part.texture, opaque), axis=2)))
         material.set_base_color_texture(RenderTexture2D(pixels, "R8G8B8A8Unorm", srgb=True))
     return RenderShapeTriangleMesh(part.vertices, part.faces, part.normals, uvs, material)

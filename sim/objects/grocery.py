@@ -5,10 +5,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from preshape.errors import InputError
-from sim.objects import loft, object_model, package_shapes
+from sim.objects import colour, loft, object_model, package_shapes, shading
+from sim.objects.colour import colour_from_hex
 from sim.objects.loft import convex_parts, visual_parts
 from sim.objects.object_model import PAPER_DENSITY, PAPER_FRICTION, ObjectModel, volume_and_centroid
 from sim.objects.package_shapes import lofts
@@ -93,8 +92,8 @@ class GrocerySet:
     @property
     def fingerprint(self) -> str:
         """Hash of the table, the shapes and the code that makes solids of them."""
-        digest = hashlib.sha256(repr((self.density, self.friction, np.__version__)).encode())
-        for module in (object_model, loft, package_shapes):
+        digest = hashlib.sha256(repr((self.density, self.friction)).encode())
+        for module in (object_model, colour, shading, loft, package_shapes):
             digest.update(Path(str(module.__file__)).read_bytes())
         digest.update(Path(__file__).read_bytes())
         return digest.hexdigest()
@@ -112,17 +111,10 @@ class GrocerySet:
 
 def build_item(name: str, item: GroceryItem, density: float, friction: float) -> ObjectModel:
     """The solid that a row of the table describes."""
-    colours = {material: linear_rgb(colour) for material, colour in item.colours.items()}
+    colours = {material: colour_from_hex(code) for material, code in item.colours.items()}
     width, depth, height = (length / 1000 for length in item.size_mm)
     pieces = lofts(item.family, (width, depth, height), colours)
     parts = tuple(part for piece in pieces for part in convex_parts(piece))
     visuals = tuple(part for piece in pieces for part in visual_parts(piece))
     mass = density * volume_and_centroid(parts)[0]
     return ObjectModel(name, parts, visuals, mass, friction).centred()
-
-
-def linear_rgb(colour: str) -> tuple[float, float, float]:
-    """Linear RGB, 0-1, of an sRGB colour "#rrggbb" (IEC 61966-2-1)."""
-    encoded = np.frombuffer(bytes.fromhex(colour.removeprefix("#")), np.uint8) / 255
-    linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
-    return float(linear[0]), float(linear[1]), float(linear[2])

@@ -1,10 +1,7 @@
 """Shapes of everyday packages as data: profiles in fractions of an object's size.
 
-A profile is a list of lofts. A loft is a list of rows (height, width, depth, roundness, material[, offset]):
-height as a fraction of the object's height; width (x) and depth (y) as fractions of its width and depth;
-roundness as in `loft.Station`; material is a key of the object's colours and paints the wall above the row;
-offset moves the cross-section along y, as a fraction of the depth. A row
-without a depth is round, its diameter a fraction of the smaller of width and depth: oval bottles have round caps.
+A profile is a list of lofts, a loft a list of rows: cross-sections from bottom to top. Oval bottles have
+round caps, so a row may leave out its depth and be round.
 """
 
 import math
