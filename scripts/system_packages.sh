@@ -32,7 +32,8 @@ nvidia_renders() {
 mesa_needed() { ! nvidia_renders && ! recent_enough "$(installed_version $MESA)"; }
 
 apt_install() {
-    as_root env DEBIAN_FRONTEND=noninteractive apt-get install --yes -qq --no-install-recommends "$@"
+    as_root env DEBIAN_FRONTEND=noninteractive \
+        apt-get install --yes -qq --no-install-recommends -o Dpkg::Use-Pty=0 "$@" >&2
 }
 
 apt_update() { as_root apt-get update -qq || say "some lists of packages could not be read; going on with the others"; }
