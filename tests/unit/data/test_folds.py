@@ -1,0 +1,96 @@
+"""Folds: every trial is tested once, and what must not leak does not."""
+
+from collections import Counter
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from preshape.data.folds import FOLDS, Split, SplitScheme, object_folds, split_trials
+from preshape.data.trial_table import TrialTable
+from preshape.errors import InputError
+
+TableMaker = Callable[..., TrialTable]
+
+
+def splits(trials: TrialTable, scheme: SplitScheme, seed: int = 0) -> list[Split]:
+    return [
+        split_trials(trials, scheme, fold=fold, validation_fraction=0.1, seed=seed) for fold in range(FOLDS)
+    ]
+
+
+@pytest.fixture(scope="module")
+def trials(table: TableMaker) -> TrialTable:
+    return table(n_scenes=120, n_objects=13)
+
+
+@pytest.mark.parametrize("scheme", SplitScheme)
+def test_every_trial_is_in_one_part_and_tested_once(trials: TrialTable, scheme: SplitScheme) -> None:
+    tested: Counter[int] = Counter()
+    for split in splits(trials, scheme):
+        parts = np.concatenate((split.train, split.validation, split.test))
+        assert sorted(parts.tolist()) == list(range(len(trials)))
+        tested.update(split.test.tolist())
+    assert tested == Counter(range(len(trials)))
+
+
+@pytest.mark.parametrize("scheme", [SplitScheme.SCENES, SplitScheme.UNSEEN])
+def test_no_scene_is_in_two_parts(trials: TrialTable, scheme: SplitScheme) -> None:
+    for split in splits(trials, scheme):
+        parts = [set(trials.scene_ids[part]) for part in (split.train, split.validation, split.test)]
+        assert sum(map(len, parts)) == len(set.union(*parts))
+
+
+def test_unseen_objects_are_never_learned_from(trials: TrialTable) -> None:
+    objects = np.array(trials.object_ids)
+    for split in splits(trials, SplitScheme.UNSEEN):
+        assert set(objects[split.test]).isdisjoint(objects[split.train])
+        assert set(objects[split.test]).isdisjoint(objects[split.validation])
+
+
+@pytest.mark.parametrize("scheme", [SplitScheme.SCENES, SplitScheme.SEEN])
+def test_folds_share_the_successes_evenly(trials: TrialTable, scheme: SplitScheme) -> None:
+    rates = [trials.lifted[split.test].mean() for split in splits(trials, scheme)]
+    assert rates == pytest.approx([trials.lifted.mean()] * FOLDS, abs=0.06)
+
+
+def test_objects_are_dealt_in_snake_order(trials: TrialTable) -> None:
+    folds = object_folds(trials)
+    successes = Counter(trials.where(trials.lifted).object_ids)
+    ordered = sorted(folds, key=lambda name: (-successes[name], name))
+    assert [folds[name] for name in ordered] == [0, 1, 2, 3, 4, 4, 3, 2, 1, 0, 0, 1, 2]
+
+
+def test_a_seed_decides_the_split(trials: TrialTable) -> None:
+    first, again, other = (splits(trials, SplitScheme.SCENES, seed)[0] for seed in (0, 0, 1))
+    assert np.array_equal(first.test, again.test)
+    assert not np.array_equal(first.test, other.test)
+
+
+def test_validation_can_be_left_out(trials: TrialTable) -> None:
+    split = split_trials(trials, SplitScheme.SCENES, fold=0, validation_fraction=0.0, seed=0)
+    assert len(split.validation) == 0
+    assert len(split.train) + len(split.test) == len(trials)
+
+
+@pytest.mark.parametrize(
+    ("n_scenes", "n_objects", "rate", "scheme", "fold", "message"),
+    [
+        (40, 8, 0.3, SplitScheme.SCENES, 5, "no fold 5"),
+        (40, 8, 0.3, SplitScheme.SEEN, -1, "no fold -1"),
+        (40, 4, 0.3, SplitScheme.UNSEEN, 0, "4 objects"),
+        (40, 8, 0.0, SplitScheme.SCENES, 0, "0 lifted and 120 failed"),
+        (3, 3, 0.5, SplitScheme.SCENES, 0, "of 3 scenes"),
+    ],
+)
+def test_impossible_splits_are_refused(
+    table: TableMaker,
+    n_scenes: int,
+    n_objects: int,
+    rate: float,
+    scheme: SplitScheme,
+    fold: int,
+    message: str,
+) -> None:
+    with pytest.raises(InputError, match=message):
+        split_trials(table(n_scenes, n_objects, rate), scheme, fold=fold, validation_fraction=0.1, seed=0)
