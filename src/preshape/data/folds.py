@@ -40,38 +40,58 @@ class Split:
     test: Int[np.ndarray, "test"]
 
 
-def split_trials(
-    trials: TrialTable, scheme: SplitScheme, *, fold: int, validation_fraction: float, seed: int
-) -> Split:
-    """One of five folds of executed trials: about a fifth is the test set, with its share of successes.
-
-    The validation trials come from the remaining ones and share no scene with the others, except under
-    `SplitScheme.SEEN`.
+@dataclass(frozen=True)
+class HoldOut:
+    """What is held out of a table.
 
     Args:
-        trials: executed trials.
-        scheme: what may be shared between the parts.
-        fold: which fifth is held out, 0-4.
-        validation_fraction: share of the remaining trials, to the nearest 1/n; 0 for none.
+        split: a `SplitScheme` by its value.
+        fold: which fifth of the table is the test set, 0-4.
+        validation_fraction: share of the remaining trials for validation, to the nearest 1/n; 0 for none.
         seed: seed of the shuffling.
 
     Raises:
-        InputError: if the fold does not exist, or there are too few trials, successes or objects.
+        InputError: if there is no such split or fold.
     """
-    if not 0 <= fold < FOLDS:
-        raise InputError(f"There is no fold {fold}", where="fold", fix=f"choose one of 0 to {FOLDS - 1}")
-    labels, scenes = trials.lifted, trials.scene_ids
+
+    split: str
+    fold: int
+    validation_fraction: float
+    seed: int
+
+    def __post_init__(self) -> None:
+        schemes = [scheme.value for scheme in SplitScheme]
+        if self.split not in schemes:
+            raise InputError(
+                f"There is no split {self.split!r}", where="split", fix=f"choose one of {', '.join(schemes)}"
+            )
+        if not 0 <= self.fold < FOLDS:
+            fix = f"choose one of 0 to {FOLDS - 1}"
+            raise InputError(f"There is no fold {self.fold}", where="fold", fix=fix)
+
+
+def split_trials(trials: TrialTable, hold_out: HoldOut) -> Split:
+    """Split executed trials; the test set has about the whole table's share of successes.
+
+    Validation trials share no scene with the others, except under `SplitScheme.SEEN`.
+
+    Raises:
+        InputError: if there are too few trials, successes or objects.
+    """
+    labels, seed = trials.lifted, hold_out.seed
+    scheme = SplitScheme(hold_out.split)
+    groups = np.arange(len(trials)) if scheme is SplitScheme.SEEN else trials.scene_ids
     if scheme is SplitScheme.UNSEEN:
-        test = _unseen_test(trials, fold)
+        folds = object_folds(trials)
+        is_test = np.array([folds[name] == hold_out.fold for name in trials.object_ids], dtype=bool)
     else:
-        test = _stratified(labels, _groups(scheme, scenes), FOLDS, fold, seed)
-    rest = np.flatnonzero(~test)
-    test = np.flatnonzero(test)
-    if validation_fraction <= 0:
-        return Split(rest, np.array([], dtype=np.int64), test)
-    parts = max(2, round(1 / validation_fraction))
-    validation = _stratified(labels[rest], _groups(scheme, scenes[rest]), parts, 0, seed)
-    return Split(rest[~validation], rest[validation], test)
+        is_test = _stratified(labels, groups, FOLDS, hold_out.fold, seed)
+    rest, test = np.flatnonzero(~is_test), np.flatnonzero(is_test)
+    if hold_out.validation_fraction <= 0:
+        return Split(rest, rest[:0], test)
+    parts = max(2, round(1 / hold_out.validation_fraction))
+    is_validation = _stratified(labels[rest], groups[rest], parts, 0, seed)
+    return Split(rest[~is_validation], rest[is_validation], test)
 
 
 def object_folds(trials: TrialTable) -> dict[str, int]:
@@ -95,31 +115,24 @@ def object_folds(trials: TrialTable) -> dict[str, int]:
     return {name: snake[i % len(snake)] for i, name in enumerate(ordered)}
 
 
-def _groups(scheme: SplitScheme, scenes: Int[np.ndarray, "n"]) -> Int[np.ndarray, "n"] | None:
-    return None if scheme is SplitScheme.SEEN else scenes
-
-
-def _unseen_test(trials: TrialTable, fold: int) -> Bool[np.ndarray, "n"]:
-    folds = object_folds(trials)
-    return np.array([folds[name] == fold for name in trials.object_ids], dtype=bool)
-
-
 def _stratified(
-    labels: Bool[np.ndarray, "n"], groups: Int[np.ndarray, "n"] | None, folds: int, fold: int, seed: int
+    labels: Bool[np.ndarray, "n"], groups: Int[np.ndarray, "n"], folds: int, fold: int, seed: int
 ) -> Bool[np.ndarray, "n"]:
     """Mask of one of several folds of about the same share of successes; groups stay together."""
     scarce = min(int(labels.sum()), int((~labels).sum()))
-    units = len(labels) if groups is None else len(np.unique(groups))
-    if scarce < folds or units < folds:
+    n_groups = len(np.unique(groups))
+    if scarce < folds or n_groups < folds:
         raise InputError(
-            f"{labels.sum()} lifted and {(~labels).sum()} failed trials of {units} scenes "
+            f"{labels.sum()} lifted and {(~labels).sum()} failed trials in {n_groups} groups "
             f"are too few for {folds} parts",
             where="trial table",
-            fix="collect more trials with `python sim/collect.py`, or take dataset.validation_fraction=0",
+            fix="collect more trials with `python sim/collect.py`, or leave validation out with "
+            "dataset.hold_out.validation_fraction=0",
         )
-    kind = StratifiedKFold if groups is None else StratifiedGroupKFold
-    splitter = kind(folds, shuffle=True, random_state=seed)
-    members = [test for _, test in splitter.split(labels, labels, groups)][fold]
+    if n_groups == len(labels):
+        splits = StratifiedKFold(folds, shuffle=True, random_state=seed).split(labels, labels)
+    else:
+        splits = StratifiedGroupKFold(folds, shuffle=True, random_state=seed).split(labels, labels, groups)
     mask = np.zeros(len(labels), dtype=bool)
-    mask[members] = True
+    mask[[test for _, test in splits][fold]] = True
     return mask

@@ -32,4 +32,8 @@ class Scene:
 class SceneRenderer(Protocol):
     """Makes the image of a scene; a pure function of the scene."""
 
+    @property
+    def fingerprint(self) -> str:
+        """Text that is the same for two renderers only if they make the same images."""
+
     def __call__(self, scene: Scene) -> Observation: ...

@@ -6,9 +6,6 @@ from torch import Tensor, nn
 
 from preshape.models.success_model import IMAGE_CHANNELS, SuccessModel
 
-PATCH_SIZE = 400
-"""Width and height of the object patch in pixels."""
-
 
 class ConfigCNN(SuccessModel):
     """Image and grasp configuration channels that meet on a feature map; 61,065 parameters for d = 14.

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from preshape.data.folds import FOLDS, Split, SplitScheme, object_folds, split_trials
+from preshape.data.folds import FOLDS, HoldOut, Split, SplitScheme, object_folds, split_trials
 from preshape.data.trial_table import TrialTable
 from preshape.errors import InputError
 
@@ -14,14 +14,12 @@ TableMaker = Callable[..., TrialTable]
 
 
 def splits(trials: TrialTable, scheme: SplitScheme, seed: int = 0) -> list[Split]:
-    return [
-        split_trials(trials, scheme, fold=fold, validation_fraction=0.1, seed=seed) for fold in range(FOLDS)
-    ]
+    return [split_trials(trials, HoldOut(scheme, fold, 0.1, seed)) for fold in range(FOLDS)]
 
 
 @pytest.fixture(scope="module")
 def trials(table: TableMaker) -> TrialTable:
-    return table(n_scenes=120, n_objects=13)
+    return table(n_scenes=80, n_objects=13)
 
 
 @pytest.mark.parametrize("scheme", SplitScheme)
@@ -68,29 +66,27 @@ def test_a_seed_decides_the_split(trials: TrialTable) -> None:
 
 
 def test_validation_can_be_left_out(trials: TrialTable) -> None:
-    split = split_trials(trials, SplitScheme.SCENES, fold=0, validation_fraction=0.0, seed=0)
+    split = split_trials(trials, HoldOut("scenes", fold=0, validation_fraction=0.0, seed=0))
     assert len(split.validation) == 0
     assert len(split.train) + len(split.test) == len(trials)
 
 
 @pytest.mark.parametrize(
-    ("n_scenes", "n_objects", "rate", "scheme", "fold", "message"),
+    ("n_scenes", "n_objects", "rate", "scheme", "message"),
     [
-        (40, 8, 0.3, SplitScheme.SCENES, 5, "no fold 5"),
-        (40, 8, 0.3, SplitScheme.SEEN, -1, "no fold -1"),
-        (40, 4, 0.3, SplitScheme.UNSEEN, 0, "4 objects"),
-        (40, 8, 0.0, SplitScheme.SCENES, 0, "0 lifted and 120 failed"),
-        (3, 3, 0.5, SplitScheme.SCENES, 0, "of 3 scenes"),
+        (40, 4, 0.3, SplitScheme.UNSEEN, "4 objects"),
+        (40, 8, 0.0, SplitScheme.SCENES, "0 lifted and 120 failed"),
+        (3, 3, 0.5, SplitScheme.SCENES, "in 3 groups"),
     ],
 )
-def test_impossible_splits_are_refused(
-    table: TableMaker,
-    n_scenes: int,
-    n_objects: int,
-    rate: float,
-    scheme: SplitScheme,
-    fold: int,
-    message: str,
+def test_tables_that_are_too_small_are_refused(
+    table: TableMaker, n_scenes: int, n_objects: int, rate: float, scheme: SplitScheme, message: str
 ) -> None:
     with pytest.raises(InputError, match=message):
-        split_trials(table(n_scenes, n_objects, rate), scheme, fold=fold, validation_fraction=0.1, seed=0)
+        split_trials(table(n_scenes, n_objects, rate), HoldOut(scheme, 0, 0.1, 0))
+
+
+@pytest.mark.parametrize(("split", "fold"), [("scenes", 5), ("seen", -1), ("all", 0)])
+def test_unknown_splits_and_folds_are_refused(split: str, fold: int) -> None:
+    with pytest.raises(InputError, match="There is no"):
+        HoldOut(split, fold, validation_fraction=0.1, seed=0)

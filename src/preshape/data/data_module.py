@@ -1,0 +1,125 @@
+"""From a folder of labelled grasps to the batches of a network."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import lightning
+import numpy as np
+from jaxtyping import Int
+from torch.utils.data import DataLoader, Sampler
+
+from preshape.data.batches import InOrder, PositiveBatches
+from preshape.data.folds import HoldOut, split_trials
+from preshape.data.grasp_dataset import GraspBatch, GraspDataset
+from preshape.data.images import PatchCache
+from preshape.data.scene import SceneRenderer
+from preshape.data.tables import data_hash, read_data_set
+from preshape.errors import InputError
+from preshape.grasps.space import GraspSpace
+
+
+@dataclass(frozen=True)
+class BatchSettings:
+    """How trials are drawn for training.
+
+    Args:
+        batch_size: trials per batch.
+        min_positives: lifted trials that a training batch has at least; 0 keeps the table's share.
+        batches_per_epoch: training batches between two validations.
+        seed: seed of the draws.
+    """
+
+    batch_size: int
+    min_positives: int
+    batches_per_epoch: int
+    seed: int
+
+
+class GraspDataModule(lightning.LightningDataModule):
+    """Executed trials of a data set, rendered, split and in batches.
+
+    Args:
+        folder: the data set: `scenes.parquet` and `trials.parquet`.
+        robot: name of the robot whose trials they must be.
+        space: grasp space of theta.
+        renderer: makes the images of the scenes.
+        cache: folder of the rendered patches.
+        hold_out: which trials are held out.
+        batches: how the others are drawn.
+    """
+
+    train: GraspDataset
+    validation: GraspDataset
+    test: GraspDataset
+    data_hash: str
+
+    def __init__(
+        self,
+        *,
+        folder: str | Path,
+        robot: str,
+        space: GraspSpace,
+        renderer: SceneRenderer,
+        cache: str | Path,
+        hold_out: HoldOut,
+        batches: BatchSettings,
+    ) -> None:
+        super().__init__()
+        self._folder, self._robot, self._space = Path(folder), robot, space
+        self._cache = PatchCache(cache, renderer)
+        self._hold_out, self._batches = hold_out, batches
+
+    def setup(self, stage: str | None = None) -> None:
+        """Read the tables, render what is not rendered yet, and split; does nothing the second time.
+
+        Raises:
+            InputError: if a table cannot be used, is of another robot, or is too small.
+        """
+        if hasattr(self, "data_hash"):
+            return
+        scenes, trials = read_data_set(self._folder, self._space)
+        if trials.origin.robot != self._robot:
+            raise InputError(
+                f"The trials were collected with robot {trials.origin.robot}, not {self._robot}",
+                where=self._folder,
+                fix=f"choose a data set of {self._robot}, or the robot {trials.origin.robot}",
+            )
+        executed = trials.executed
+        split = split_trials(executed, self._hold_out)
+        self._cache.fill([scenes.by_id[scene_id] for scene_id in np.unique(executed.scene_ids).tolist()])
+
+        def part(rows: Int[np.ndarray, "rows"]) -> GraspDataset:
+            mask = np.isin(np.arange(len(executed)), rows)
+            return GraspDataset(executed.where(mask), scenes.by_id, self._cache)
+
+        self.train, self.validation, self.test = part(split.train), part(split.validation), part(split.test)
+        self.data_hash = data_hash(self._folder)
+
+    def train_dataloader(self) -> DataLoader[GraspBatch]:
+        """Random batches with enough positives."""
+        settings = self._batches
+        batches = PositiveBatches(
+            self.train.trials.lifted,
+            batch_size=settings.batch_size,
+            min_positives=settings.min_positives,
+            batches=settings.batches_per_epoch,
+            seed=settings.seed,
+        )
+        return _loader(self.train, batches)
+
+    def val_dataloader(self) -> DataLoader[GraspBatch]:
+        """The validation trials in order."""
+        return _loader(self.validation, InOrder(len(self.validation), self._batches.batch_size))
+
+    def test_dataloader(self) -> DataLoader[GraspBatch]:
+        """The test trials in order."""
+        return _loader(self.test, InOrder(len(self.test), self._batches.batch_size))
+
+    def predict_dataloader(self) -> DataLoader[GraspBatch]:
+        """The test trials in order."""
+        return self.test_dataloader()
+
+
+def _loader(dataset: GraspDataset, batches: Sampler[list[int]]) -> DataLoader[GraspBatch]:
+    # The sampler already yields whole batches, and the data set looks them up at once.
+    return DataLoader(dataset, sampler=batches, batch_size=None)

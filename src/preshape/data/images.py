@@ -1,0 +1,95 @@
+"""Patches of scenes, rendered when they are first needed and kept in a cache that anyone may delete."""
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float16
+
+from preshape.data.scene import Scene, SceneRenderer
+from preshape.files import atomic_path
+from preshape.perception.image import CHANNEL_NAMES, eight_channel_image
+from preshape.perception.patch import object_centre, object_patch
+from preshape.perception.segmentation import SegmentationSettings, segment
+from preshape.progress import Progress
+
+PERCEPTION_VERSION = 1
+"""Raised whenever the way from a view to its patch changes, so that cached patches are made anew."""
+PATCH_SIZE = 400
+"""Width and height of an object patch in pixels."""
+
+
+class PatchCache:
+    """Object patches of scenes, in half precision, one file each.
+
+    A file's name is the digest of everything that the patch is a function of: the scene, the renderer, the
+    segmentation and the version of perception. So a file is never out of date, only unused.
+
+    Args:
+        folder: where the files lie.
+        renderer: makes the image of a scene.
+        segmentation: how the object is found in it.
+    """
+
+    def __init__(
+        self, folder: str | Path, renderer: SceneRenderer, segmentation: SegmentationSettings | None = None
+    ) -> None:
+        self._folder = Path(folder)
+        self._renderer = renderer
+        self._segmentation = segmentation or SegmentationSettings()
+
+    def path(self, scene: Scene) -> Path:
+        """Where the patch of a scene lies, or would lie."""
+        origin = {
+            "scene": asdict(scene),
+            "renderer": self._renderer.fingerprint,
+            "segmentation": asdict(self._segmentation),
+            "perception": PERCEPTION_VERSION,
+        }
+        text = json.dumps(origin, sort_keys=True, default=np.ndarray.tolist)
+        digest = hashlib.sha256(text.encode()).hexdigest()
+        return self._folder / digest[:2] / f"{digest}.npy"
+
+    def fill(self, scenes: Sequence[Scene]) -> None:
+        """Render what is missing.
+
+        Raises:
+            InputError: if no object can be made out in a scene, or the cache cannot be written to.
+        """
+        missing = [scene for scene in scenes if _open(self.path(scene)) is None]
+        if not missing:
+            return
+        with Progress("Rendering", len(missing), "scenes") as progress:
+            for scene in missing:
+                self._render(scene)
+                progress.advance()
+
+    def __getitem__(self, scene: Scene) -> Float16[np.ndarray, "8 400 400"]:
+        """The patch of a scene, mapped from its file, which is made if it is missing."""
+        patch = _open(self.path(scene))
+        if patch is None:
+            self._render(scene)
+            patch = _open(self.path(scene))
+            assert patch is not None
+        return patch
+
+    def _render(self, scene: Scene) -> None:
+        observation = self._renderer(scene)
+        segmented = segment(observation, self._segmentation)
+        centre = object_centre(segmented, observation.camera)
+        patch = object_patch(eight_channel_image(observation), centre, PATCH_SIZE)
+        with atomic_path(self.path(scene)) as temporary:
+            np.save(temporary, patch.astype(np.float16), allow_pickle=False)
+
+
+def _open(path: Path) -> Float16[np.ndarray, "8 400 400"] | None:
+    """The patch in a file; None if there is none, or the file is damaged."""
+    try:
+        patch = np.load(path, mmap_mode="r", allow_pickle=False)
+    except (OSError, ValueError, EOFError):
+        return None
+    fits = patch.dtype == np.float16 and patch.shape == (len(CHANNEL_NAMES), PATCH_SIZE, PATCH_SIZE)
+    return patch if fits else None

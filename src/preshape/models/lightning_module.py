@@ -1,0 +1,87 @@
+"""How a success network learns: cross entropy, Adam, step schedule (paper, section 3.3)."""
+
+from dataclasses import asdict, dataclass
+
+import lightning
+import torch
+from jaxtyping import Float
+from lightning.pytorch.utilities.types import OptimizerLRSchedulerConfig
+from torch import Tensor
+from torch.nn.functional import binary_cross_entropy_with_logits
+from torchmetrics.functional.classification import binary_auroc
+
+from preshape.data.grasp_dataset import GraspBatch
+from preshape.models.success_model import SuccessModel
+
+
+@dataclass(frozen=True)
+class LearningSettings:
+    """How the weights are fitted.
+
+    Args:
+        iterations: number of batches.
+        learning_rate: of Adam, at the beginning.
+        learning_rate_factor: by which it changes, twice, after each third of the iterations.
+        seed: seed of dropout.
+    """
+
+    iterations: int
+    learning_rate: float
+    learning_rate_factor: float
+    seed: int
+
+
+class GraspLightningModule(lightning.LightningModule):
+    """A success network in training.
+
+    Args:
+        model: the network.
+        settings: how it learns.
+    """
+
+    def __init__(self, model: SuccessModel, settings: LearningSettings) -> None:
+        super().__init__()
+        self.model = model.to(memory_format=torch.channels_last)
+        self.settings = settings
+        self.save_hyperparameters(asdict(settings), logger=False)
+        self._validation: list[tuple[Tensor, Tensor]] = []
+
+    def forward(self, batch: GraspBatch) -> Float[Tensor, "b"]:
+        """Logits of a batch."""
+        logits: Tensor = self.model(batch.patch.to(batch.theta), batch.theta)
+        return logits
+
+    def on_train_epoch_start(self) -> None:
+        """Make dropout a function of seed and epoch, so that an interrupted training goes on alike."""
+        torch.manual_seed(self.settings.seed + 7919 * (1 + self.current_epoch))
+
+    def training_step(self, batch: GraspBatch) -> Float[Tensor, ""]:
+        """Cross entropy of a batch (equation 2)."""
+        loss = binary_cross_entropy_with_logits(self(batch), batch.label)
+        self.log("train_loss", loss, on_step=False, on_epoch=True, batch_size=len(batch.label))
+        return loss
+
+    def validation_step(self, batch: GraspBatch) -> None:
+        """Collect the logits of the validation trials."""
+        self._validation.append((self(batch), batch.label))
+
+    def on_validation_epoch_end(self) -> None:
+        """Log cross entropy and area under the ROC curve of all validation trials together."""
+        logits, labels = (torch.cat(parts) for parts in zip(*self._validation, strict=True))
+        self._validation.clear()
+        self.log("val_loss", binary_cross_entropy_with_logits(logits, labels))
+        self.log("val_auc", binary_auroc(logits, labels.int()))
+
+    def predict_step(self, batch: GraspBatch) -> Float[Tensor, "b"]:
+        """Success probabilities of a batch."""
+        return torch.sigmoid(self(batch))
+
+    def configure_optimizers(self) -> OptimizerLRSchedulerConfig:
+        """Adam with a learning rate that drops after each third of the iterations."""
+        settings = self.settings
+        optimizer = torch.optim.Adam(self.model.parameters(), lr=settings.learning_rate)
+        third = settings.iterations // 3
+        schedule = torch.optim.lr_scheduler.MultiStepLR(
+            optimizer, milestones=[third, 2 * third], gamma=settings.learning_rate_factor
+        )
+        return {"optimizer": optimizer, "lr_scheduler": {"scheduler": schedule, "interval": "step"}}
