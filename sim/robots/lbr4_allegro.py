@@ -22,8 +22,13 @@ MOUNT_RADIUS_M = 0.04
 MOUNT_DENSITY = 2700.0
 ROOT_LINK = "lbr4_base_link"
 
-# Shapes that overlap by design: the forearm reaches around the wrist, the thumb's root into the palm.
-OVERLAPPING_PAIRS = (("lbr4_5_link", FLANGE_LINK), (allegro.PALM_LINK, "link_13.0"))
+# Shapes that overlap by design: forearm and wrist reach around the flange, the thumb's root into the palm.
+OVERLAPPING_PAIRS = (
+    ("lbr4_5_link", FLANGE_LINK),
+    ("lbr4_5_link", MOUNT_LINK),
+    ("lbr4_6_link", MOUNT_LINK),
+    (allegro.PALM_LINK, "link_13.0"),
+)
 
 
 def load_robot(settings: RobotSettings, grasp_space: GraspSpace, cache: str | Path) -> RobotDescription:

@@ -1,0 +1,1 @@
+"""Motions of the arm: inverse kinematics, collision checks, paths and their timing."""

@@ -1,0 +1,93 @@
+"""What the arm's planner answers: a motion in three parts, or why there is none."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+from scipy.interpolate import CubicHermiteSpline
+
+from preshape.data.trial import TrialOutcome
+
+
+@dataclass(frozen=True, eq=False)
+class JointTrajectory:
+    """A smooth motion of the arm's joints, from rest to rest.
+
+    Between its samples it is the cubic that fits their positions and velocities.
+
+    Args:
+        times: seconds from the start, increasing from 0.
+        positions: joint angles (rad).
+        velocities: joint velocities (rad/s).
+    """
+
+    times: Float[np.ndarray, "n"]
+    positions: Float[np.ndarray, "n a"]
+    velocities: Float[np.ndarray, "n a"]
+
+    @property
+    def duration_s(self) -> float:
+        """Seconds from the first sample to the last."""
+        return float(self.times[-1])
+
+    def sample(self, time_s: float) -> tuple[Float[np.ndarray, "a"], Float[np.ndarray, "a"]]:
+        """Joint angles (rad) and velocities (rad/s) at a time; before and after it, the arm rests."""
+        if time_s >= self.duration_s:
+            return self.positions[-1], np.zeros_like(self.positions[-1])
+        position, velocity = self._splines
+        clipped = max(time_s, 0.0)
+        return position(clipped), velocity(clipped)
+
+    @cached_property
+    def _splines(self) -> tuple[CubicHermiteSpline, CubicHermiteSpline]:
+        position = CubicHermiteSpline(self.times, self.positions, self.velocities)
+        return position, position.derivative()
+
+
+@dataclass(frozen=True)
+class PlanningTimes:
+    """Wall-clock seconds of the parts of a query.
+
+    Args:
+        inverse_kinematics_s: solutions, straight lines and their collision checks.
+        path_s: the search for free paths.
+        timing_s: fitting velocities to paths.
+    """
+
+    inverse_kinematics_s: float = 0.0
+    path_s: float = 0.0
+    timing_s: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class GraspMotion:
+    """The arm's whole motion to a grasp and up again.
+
+    Args:
+        transit: free motion from rest to the pre-grasp pose.
+        approach: straight line along the palm's normal to the grasp pose.
+        lift: straight line upwards.
+        times: how long planning took.
+    """
+
+    transit: JointTrajectory
+    approach: JointTrajectory
+    lift: JointTrajectory
+    times: PlanningTimes
+
+
+@dataclass(frozen=True)
+class MotionFailure:
+    """Why there is no motion to a grasp.
+
+    Args:
+        outcome: UNREACHABLE (no arm configuration has the palm there) or BLOCKED (some do, but they collide,
+            or no free path or straight line leads there and up again).
+        reason: one sentence.
+        times: how long planning took.
+    """
+
+    outcome: TrialOutcome
+    reason: str
+    times: PlanningTimes
