@@ -36,7 +36,8 @@ class HeuristicSettings:
         top_offset_m, side_offset_m: distance of the palm's origin from the face's centre along its normal.
         offset_noise_m: standard deviation of the noise on that distance.
         axis_noise_rad: standard deviation of the noise on the turn of a top grasp about the vertical.
-        min_palm_height_m: lowest height of the palm's origin over the table; a lower palm is raised to it.
+        min_top_palm_height_m, min_side_palm_height_m: lowest height of the palm's origin over the table for top
+            and for side grasps, so that the hand clears the table; a lower palm is raised to it.
         min_side_height_m: lower objects get a top grasp only.
         reach_direction: world direction in which the arm reaches; the fingers of a top grasp point that way.
     """
@@ -46,7 +47,8 @@ class HeuristicSettings:
     side_offset_m: float = 0.03
     offset_noise_m: float = 0.001
     axis_noise_rad: float = 0.05
-    min_palm_height_m: float = 0.02
+    min_top_palm_height_m: float = 0.02
+    min_side_palm_height_m: float = 0.02
     min_side_height_m: float = 0.03
     reach_direction: Sequence[float] = (1.0, 0.0, 0.0)
 
@@ -77,14 +79,16 @@ def heuristic_grasps(
     Raises:
         InputError: a preshape joint of the grasp space has no range.
     """
-    faces = {Face.TOP: (_top_rotation(segmented, settings, camera, rng), settings.top_offset_m)}
+    top = _top_rotation(segmented, settings, camera, rng)
+    faces = {Face.TOP: (top, settings.top_offset_m, settings.min_top_palm_height_m)}
     if segmented.extents[2] >= settings.min_side_height_m:
         for face, normal in zip((Face.SIDE_NEAREST, Face.SIDE_SECOND), visible_sides(segmented), strict=True):
-            faces[face] = (_side_rotation(segmented, normal), settings.side_offset_m)
+            side = _side_rotation(segmented, normal)
+            faces[face] = (side, settings.side_offset_m, settings.min_side_palm_height_m)
     grasps = []
-    for face, (rotation, offset) in faces.items():
+    for face, (rotation, offset, min_height) in faces.items():
         distance = rng.normal(offset, settings.offset_noise_m)
-        palm = _palm_position(segmented, -rotation[:, 0], distance, settings.min_palm_height_m)
+        palm = _palm_position(segmented, -rotation[:, 0], distance, min_height)
         joints = _preshape(space, settings.joint_ranges, rng)
         grasps.append(InitialGrasp(space.theta(make_pose(rotation, palm), joints), face))
     return grasps

@@ -60,8 +60,8 @@ def test_palms_face_their_faces(box: SegmentedObject, seed: int) -> None:
         assert np.isclose(distance, offset)
         sideways = (np.eye(3) - np.outer(outward, outward)) @ (palm[:3, 3] - centre)
         height = palm[:3, 3] @ box.plane[:3] + box.plane[3]
-        assert height >= EXACT.min_palm_height_m - 1e-9
-        assert np.linalg.norm(sideways) < 1e-9 or np.isclose(height, EXACT.min_palm_height_m)
+        assert height >= EXACT.min_side_palm_height_m - 1e-9
+        assert np.linalg.norm(sideways) < 1e-9 or np.isclose(height, EXACT.min_side_palm_height_m)
 
 
 @given(boxes, seeds)
