@@ -1,1 +1,1 @@
-"""Differentiable forward kinematics of hands: theta to palm, fingertips and pixels."""
+"""Differentiable forward kinematics of hands: theta to palm and fingers in the camera frame."""
