@@ -1,5 +1,7 @@
 """A `preshape` camera in a SAPIEN scene."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import sapien
 from jaxtyping import Float32, Int, UInt8
@@ -8,10 +10,23 @@ from sapien.render import RenderCameraComponent
 from preshape.geometry.camera import Camera
 from sim.objects.actor import sapien_pose
 
-NEAR_M, FAR_M = 0.05, 10.0
+NEAR_M, FAR_M = 0.05, 30.0
 
 T_OPTICAL_SAPIEN = np.array([[0.0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 0], [0, 0, 0, 1]])
 """SAPIEN's camera looks along its x, with y to the left and z up, seen from the optical frame."""
+
+
+def camera_looking_at(
+    eye: Sequence[float], target: Sequence[float], width: int, height: int, focal: float
+) -> Camera:
+    """The camera of a configuration: at `eye`, looking at `target` (m, world); sizes in pixels."""
+    return Camera.looking_at(
+        np.array(eye, dtype=float),
+        np.array(target, dtype=float),
+        width=width,
+        height=height,
+        focal=float(focal),
+    )
 
 
 def add_camera(scene: sapien.Scene, camera: Camera) -> RenderCameraComponent:

@@ -1,6 +1,7 @@
 """Which parts of SAPIEN a scene has: physics, pictures or both."""
 
 import logging
+from functools import cache
 
 import sapien
 from sapien.render import RenderSystem
@@ -23,12 +24,15 @@ def has_renderer(scene: sapien.Scene) -> bool:
 
 
 def make_render_system() -> RenderSystem:
-    """What makes a scene visible; all render systems of a process share one Vulkan device.
+    """What makes a scene visible; every scene needs its own.
+
+    The first one of a process compiles the shaders, at its first picture, which takes some 10 s on a CPU.
 
     Raises:
         InputError: if the machine has no Vulkan device that SAPIEN can use.
     """
     try:
+        _hold_device()
         return RenderSystem()
     except RuntimeError as error:
         raise InputError(
@@ -36,6 +40,12 @@ def make_render_system() -> RenderSystem:
             where="the graphics driver",
             fix="run `make setup`, which installs Mesa's software renderer (lavapipe, Mesa 24.3 or newer)",
         ) from error
+
+
+@cache
+def _hold_device() -> RenderSystem:
+    """Keeps the Vulkan device and its shaders: without a living render system they go with the last scene."""
+    return RenderSystem()
 
 
 def _has_system(scene: sapien.Scene, name: str) -> bool:

@@ -15,7 +15,7 @@ from sapien.render import RenderBodyComponent, RenderMaterial, RenderShapeBox
 from sim.scene_systems import has_physics, has_renderer
 
 LEG_WIDTH_M = 0.05
-FLOOR_HALF_SIZE_M = 3.0
+FLOOR_HALF_SIZE_M = 10.0
 FLOOR_THICKNESS_M = 0.02
 # SAPIEN's planes face +x; this turns +x to the world's z.
 PLANE_UP = (np.sqrt(0.5), 0.0, -np.sqrt(0.5), 0.0)

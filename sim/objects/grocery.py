@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from preshape.errors import InputError
@@ -83,6 +83,7 @@ class GrocerySet:
     density: float = PAPER_DENSITY
     friction: float = PAPER_FRICTION
     name: str = "grocery"
+    _models: dict[str, ObjectModel] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -106,7 +107,9 @@ class GrocerySet:
                 where="objects",
                 fix=f"choose one of: {', '.join(self.names)}",
             )
-        return build_item(name, GROCERY_ITEMS[name], self.density, self.friction)
+        if name not in self._models:
+            self._models[name] = build_item(name, GROCERY_ITEMS[name], self.density, self.friction)
+        return self._models[name]
 
 
 def build_item(name: str, item: GroceryItem, density: float, friction: float) -> ObjectModel:

@@ -60,6 +60,7 @@ class MeshFolder:
     friction: float = PAPER_FRICTION
     convex: ConvexSettings = field(default_factory=ConvexSettings)
     name: str = ""
+    _models: dict[str, ObjectModel] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "root", Path(self.root).expanduser().resolve())
@@ -104,7 +105,11 @@ class MeshFolder:
                 where=self.root,
                 fix=f"choose one of: {', '.join(self.names)}",
             )
-        path = self._files[name]
+        if name not in self._models:
+            self._models[name] = self._read(name, self._files[name])
+        return self._models[name]
+
+    def _read(self, name: str, path: Path) -> ObjectModel:
         urdf = read_object_urdf(path) if path.suffix.lower() == URDF_SUFFIX else bare_mesh(path)
         collisions, visuals = shapes_that_exist(urdf)
         solids = [part for mesh in collisions for part in self._placed(mesh)]

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Protocol, Self
 
 import numpy as np
@@ -73,7 +74,7 @@ class ObjectModel:
         """Height of the origin over a table on which the object stands."""
         return float(-self.bounds[0, 2])
 
-    @property
+    @cached_property
     def volume_m3(self) -> float:
         """Volume of the convex parts; parts that overlap count twice, as they do in the simulator."""
         return volume_and_centroid(self.collision_parts)[0]

@@ -1,0 +1,114 @@
+"""What a Kinect makes of a true depth image.
+
+The first Kinect sees a projected dot pattern with an infrared camera and matches it with a stored reference.
+Its errors follow from that: the measured quantity is disparity, in whole steps, so that noise and steps of depth
+grow with the square of the distance (Khoshelham and Elberink, "Accuracy and resolution of Kinect depth data for
+indoor mapping applications", Sensors 2012); surfaces seen at a grazing angle are noisier (Nguyen, Izadi and
+Lovell, "Modeling Kinect sensor noise for improved 3D reconstruction and tracking", 3DIMPVT 2012); edges are
+ragged by about a pixel (same); and what the projector cannot see stays dark.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Float32
+from scipy.ndimage import gaussian_filter
+
+from preshape.geometry.camera import Camera
+
+
+@dataclass(frozen=True)
+class KinectNoise:
+    """The noise of a Kinect's depth.
+
+    Args:
+        disparity_m: depth is this over the disparity in whole steps: 351.3 m, so that a step is 2.85 mm at 1 m
+            (Khoshelham and Elberink, m / (f b) = 2.85e-5 per cm).
+        disparity_sigma: standard deviation of the disparity (steps). Together with the steps, 0.4 gives their
+            random error of 1.4 mm at 1 m.
+        correlation_px: radius over which neighbours share their error, as the matching window makes them.
+        grazing_sigma_m: Nguyen et al.'s factor of the noise that incidence adds, times
+            angle^2 / ((90 deg - angle)^2 sqrt(depth)).
+        lateral_sigma_px: how far edges wander (Nguyen et al.: 0.8 px and more).
+        grazing_hole_deg: incidence from which pixels are lost more and more often; at 90 deg all are.
+        baseline_m: distance from the infrared camera to the projector on its right.
+        nearest_m, farthest_m: the sensor's range.
+    """
+
+    disparity_m: float = 351.3
+    disparity_sigma: float = 0.4
+    correlation_px: float = 1.0
+    grazing_sigma_m: float = 1e-4
+    lateral_sigma_px: float = 0.8
+    grazing_hole_deg: float = 75.0
+    baseline_m: float = 0.075
+    nearest_m: float = 0.4
+    farthest_m: float = 5.0
+
+    def __call__(
+        self, depth: Float32[np.ndarray, "h w"], camera: Camera, rng: np.random.Generator
+    ) -> Float32[np.ndarray, "h w"]:
+        """The measured depth (m, NaN in holes) for a true depth (m, NaN where there is nothing)."""
+        incidence = incidence_angles(depth, camera)
+        seen = ~self._shadow(depth, camera) & (rng.random(depth.shape) >= self._loss(incidence))
+        source = self._ragged(depth.shape, rng)
+        true = depth[source].astype(np.float64)
+        disparity = self.disparity_m / true + self.disparity_sigma * self._correlated(depth.shape, rng)
+        measured = self.disparity_m / np.maximum(np.rint(disparity), 1)
+        measured += self._grazing_sigma(incidence[source], true) * rng.standard_normal(depth.shape)
+        in_range = (measured >= self.nearest_m) & (measured <= self.farthest_m)
+        return np.where(seen & seen[source] & in_range, measured, np.nan).astype(np.float32)
+
+    def _loss(self, incidence: Float32[np.ndarray, "h w"]) -> Float[np.ndarray, "h w"]:
+        """Probability that a pixel is lost, by its incidence (rad); 1 where there is no surface."""
+        onset = np.deg2rad(self.grazing_hole_deg)
+        loss = np.clip((incidence - onset) / (np.pi / 2 - onset), 0, 1)
+        return np.where(np.isnan(loss), 1.0, loss)
+
+    def _grazing_sigma(
+        self, incidence: Float32[np.ndarray, "h w"], depth: Float[np.ndarray, "h w"]
+    ) -> Float[np.ndarray, "h w"]:
+        """Nguyen et al., equation for incidence above 60 degrees (m)."""
+        steep = np.clip(incidence, 0, np.deg2rad(self.grazing_hole_deg))
+        sigma = self.grazing_sigma_m * steep**2 / ((np.pi / 2 - steep) ** 2 * np.sqrt(depth))
+        return np.where(steep > np.pi / 3, sigma, 0.0)
+
+    def _shadow(self, depth: Float32[np.ndarray, "h w"], camera: Camera) -> Bool[np.ndarray, "h w"]:
+        """Where the projector's light does not reach.
+
+        Along a row the projector's columns rise with the camera's, unless something nearer, further right in
+        the image, takes the same light.
+        """
+        columns = np.arange(depth.shape[1]) - camera.fx * self.baseline_m / depth
+        columns = np.where(np.isnan(columns), np.inf, columns)
+        lowest_on_the_right = np.minimum.accumulate(columns[:, ::-1], axis=1)[:, ::-1]
+        shadow = np.zeros(depth.shape, bool)
+        shadow[:, :-1] = columns[:, :-1] > lowest_on_the_right[:, 1:]
+        return shadow
+
+    def _ragged(self, shape: tuple[int, int], rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+        """Row and column of the pixel that each pixel really measures."""
+        shift = np.rint(self.lateral_sigma_px * rng.standard_normal((2, *shape))).astype(int)
+        row, column = np.indices(shape) + shift
+        return np.clip(row, 0, shape[0] - 1), np.clip(column, 0, shape[1] - 1)
+
+    def _correlated(self, shape: tuple[int, int], rng: np.random.Generator) -> Float[np.ndarray, "h w"]:
+        """Standard normal noise that neighbours share."""
+        white = rng.standard_normal(shape)
+        if self.correlation_px == 0:
+            return white
+        smooth = gaussian_filter(white, self.correlation_px)
+        # An average over a Gaussian window of white noise has this standard deviation.
+        return smooth * 2 * np.sqrt(np.pi) * self.correlation_px
+
+
+def incidence_angles(depth: Float32[np.ndarray, "h w"], camera: Camera) -> Float32[np.ndarray, "h w"]:
+    """Angle (rad) between the line of sight and the surface's normal; near 90 degrees at depth edges."""
+    rise_v, rise_u = np.gradient(depth)
+    x = ((np.arange(camera.width) - camera.cx) / camera.fx).astype(np.float32)[None, :]
+    y = ((np.arange(camera.height) - camera.cy) / camera.fy).astype(np.float32)[:, None]
+    slope_u, slope_v = camera.fx * rise_u, camera.fy * rise_v
+    # The cross product of the surface's tangents along u and v, scaled so that its dot product with the
+    # line of sight (x, y, 1) is the depth.
+    normal_length = np.sqrt(slope_u**2 + slope_v**2 + (x * slope_u + y * slope_v + depth) ** 2)
+    return np.arccos(np.minimum(depth / (normal_length * np.sqrt(x**2 + y**2 + 1)), 1))
