@@ -4,7 +4,7 @@
 # Further packages may be named as arguments.
 set -euo pipefail
 
-readonly LIBRARIES=(libusb-1.0-0 libgl1 libgomp1 libx11-6 libvulkan1)
+readonly LIBRARIES=(libusb-1.0-0 libgl1 libegl1 libgomp1 libx11-6 libvulkan1)
 readonly MESA=mesa-vulkan-drivers
 readonly MESA_NEEDED=24.3 # the software renderer of older ones lacks descriptor indexing, which SAPIEN needs
 readonly BACKPORTS_SOURCE=/etc/apt/sources.list.d/preshape-backports.sources

@@ -10,6 +10,7 @@ MESA_NEEDED = (24, 3)
 PACKAGE_OF_LIBRARY = {
     "libusb-1.0.so": "libusb-1.0-0",
     "libGL.so": "libgl1",
+    "libEGL.so": "libegl1",
     "libgomp.so": "libgomp1",
     "libX11.so": "libx11-6",
 }

@@ -17,6 +17,10 @@ OLD_MESA = '[{"name": "llvmpipe", "driver": "llvmpipe", "version": "Mesa 22.3.6 
 OLD_MESA_AND_CARD = OLD_MESA[:-1] + ', {"name": "NVIDIA H100", "driver": "NVIDIA", "version": "550.54.14"}]'
 
 
+def disk(folder: Path, fail_below_gb: float) -> Finding:
+    return storage.check_disk(folder, warn_below_gb=1e9, fail_below_gb=fail_below_gb)
+
+
 def write_parquet_like(folder: Path, end: bytes = b"PAR1") -> None:
     for name in storage.SHIPPED_TABLES:
         (folder / name).write_bytes(b"PAR1 rows " + end)
@@ -58,12 +62,8 @@ def lock(folder: Path, text: str) -> Path:
             "make setup",
         ),
         (lambda tmp: storage.check_shipped_table(tmp), Status.FAIL, "git restore"),
-        (
-            lambda tmp: storage.check_disk(tmp, warn_below_gb=1e9, fail_below_gb=1e8),
-            Status.FAIL,
-            "make clean",
-        ),
-        (lambda tmp: storage.check_disk(tmp, warn_below_gb=1e9, fail_below_gb=0.0), Status.WARN, "make clean"),
+        (lambda tmp: disk(tmp, 1e8), Status.FAIL, "make clean"),
+        (lambda tmp: disk(tmp, 0.0), Status.WARN, "make clean"),
         (lambda tmp: storage.check_mlflow_store(broken_database(tmp), None), Status.FAIL, "mv "),
         (lambda tmp: storage.check_mlflow_store(tmp / "mlflow.db", "./mlruns"), Status.FAIL, "sqlite:///"),
         (

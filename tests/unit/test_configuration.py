@@ -1,0 +1,111 @@
+"""Every option of every configuration group is commented, composes with its commands, and builds."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import trimesh
+import yaml
+from hydra import compose, initialize_config_dir
+from hydra.core.hydra_config import HydraConfig
+from hydra.utils import instantiate
+from omegaconf import DictConfig, OmegaConf
+
+import preshape.entry_point  # noqa: F401 - registers the resolvers
+
+ROOT = Path(__file__).parents[2]
+CONF = ROOT / "conf"
+HYDRAS_OWN_KEYS = {"_target_", "_convert_", "_partial_", "_recursive_", "_args_", "defaults"}
+SCRIPTS = [path for folder in ("src", "sim", "analysis") for path in sorted((ROOT / folder).glob("*.py"))]
+COMMANDS = [
+    command
+    for script in SCRIPTS
+    for command in re.findall(r'^@entry_point\("(\w+)"\)', script.read_text(encoding="utf-8"), re.MULTILINE)
+]
+GROUPS = sorted(path for path in CONF.iterdir() if path.is_dir() and any(path.glob("*.yaml")))
+
+
+def compose_command(command: str, *overrides: str) -> DictConfig:
+    with initialize_config_dir(str(CONF), version_base="1.3"):
+        cfg = compose(command, list(overrides), return_hydra_config=True)
+    HydraConfig.instance().set_config(cfg)
+    return cfg
+
+
+def choices() -> Iterator[tuple[str, str, str]]:
+    """Every (command, group, option) that a user can choose."""
+    for command in COMMANDS:
+        chosen = compose_command(command).hydra.runtime.choices
+        for group in GROUPS:
+            for key in chosen:
+                if key.split("@")[0] == group.name:
+                    yield from ((command, key, option.stem) for option in sorted(group.glob("*.yaml")))
+
+
+CHOICES = sorted(set(choices()))
+
+
+@pytest.fixture(autouse=True)
+def forget_the_composition() -> Iterator[None]:
+    yield
+    HydraConfig.instance().cfg = None
+
+
+@pytest.fixture(scope="module")
+def mesh_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("meshes")
+    trimesh.creation.box((0.05, 0.06, 0.1)).export(folder / "box.obj")
+    return folder
+
+
+def buildable(node: object) -> Iterator[DictConfig]:
+    """The outermost parts that `instantiate` would build."""
+    if not isinstance(node, DictConfig) or node._is_none() or node._is_missing():
+        return
+    if "_target_" in node:
+        yield node
+        return
+    for key in node:
+        if not OmegaConf.is_missing(node, key):
+            yield from buildable(node[key])
+
+
+def uncommented_keys(path: Path) -> Iterator[str]:
+    text = path.read_text(encoding="utf-8")
+    lines = text.splitlines()
+
+    def walk(node: yaml.Node | None) -> Iterator[str]:
+        if not isinstance(node, yaml.MappingNode):
+            return
+        for key, value in node.value:
+            line = key.start_mark.line
+            above = lines[line - 1].strip() if line else ""
+            if key.value not in HYDRAS_OWN_KEYS and not above.startswith("#") and " # " not in lines[line]:
+                yield f"{path.relative_to(ROOT)}:{line + 1} {key.value}"
+            yield from walk(value)
+
+    yield from walk(yaml.compose(text, Loader=yaml.SafeLoader))
+
+
+@pytest.mark.parametrize("path", sorted(CONF.rglob("*.yaml")), ids=lambda path: str(path.relative_to(CONF)))
+def test_every_key_is_commented(path: Path) -> None:
+    assert list(uncommented_keys(path)) == []
+
+
+def test_no_option_is_unreachable() -> None:
+    reachable = {(key.split("@")[0], option) for _, key, option in CHOICES}
+    assert {(group.name, path.stem) for group in GROUPS for path in group.glob("*.yaml")} == reachable
+
+
+@pytest.mark.parametrize(("command", "group", "option"), CHOICES)
+def test_every_option_composes_and_builds(
+    command: str, group: str, option: str, mesh_folder: Path, tmp_path: Path
+) -> None:
+    cfg = compose_command(command, f"{group}={option}", f"paths.cache={tmp_path}")
+    cfg = OmegaConf.masked_copy(cfg, [key for key in cfg if key != "hydra"])
+    if OmegaConf.is_missing(cfg, "objects.root"):
+        cfg.objects.root = str(mesh_folder)
+    name = group.split("@")[-1]
+    for part in buildable(OmegaConf.select(cfg, name)):
+        assert instantiate(part) is not None
