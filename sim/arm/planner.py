@@ -145,11 +145,8 @@ class ArmPlanner:
 
     def _is_clear(self, transit: JointTrajectory, checker: CollisionChecker) -> bool:
         """Smoothing and timing move a path a little, so its finished form is checked again, finely."""
-        longest = np.linalg.norm(transit.velocities, axis=1).max() * transit.duration_s
-        times = np.linspace(
-            0.0, transit.duration_s, int(np.ceil(longest / self._settings.verification_rad)) + 1
-        )
-        return all(checker.is_clear(transit.sample(float(time_s))[0]) for time_s in times)
+        finely = transit.spaced_positions(self._settings.verification_rad)
+        return all(checker.is_clear(positions) for positions in finely)
 
     def _line(
         self, waypoints: Float[np.ndarray, "n a"], length_m: float, speed_m_s: float

@@ -39,6 +39,14 @@ class JointTrajectory:
         clipped = max(time_s, 0.0)
         return position(clipped), velocity(clipped)
 
+    def spaced_positions(self, spacing_rad: float) -> Float[np.ndarray, "m a"]:
+        """Joint angles (rad) along the motion, including both ends, about `spacing_rad` from each other."""
+        steps = np.linalg.norm(np.diff(self.positions, axis=0), axis=1)
+        travelled = np.concatenate(([0.0], np.cumsum(steps)))
+        count = int(np.ceil(travelled[-1] / spacing_rad)) + 1
+        times = np.interp(np.linspace(0.0, travelled[-1], count), travelled, self.times)
+        return self._splines[0](times)
+
     @cached_property
     def _splines(self) -> tuple[CubicHermiteSpline, CubicHermiteSpline]:
         position = CubicHermiteSpline(self.times, self.positions, self.velocities)
