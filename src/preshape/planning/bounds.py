@@ -1,0 +1,77 @@
+"""The box that a planner may not leave."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float64, Int
+
+from preshape.grasps.space import GraspSpace
+
+
+@dataclass(frozen=True, eq=False)
+class Bounds:
+    """Limits of theta, one box for each start, in float64 and kept to the last bit.
+
+    Args:
+        lower, upper: limits; a parameter whose limits are equal is fixed.
+
+    Raises:
+        ValueError: if a lower limit is not at or below its upper limit.
+    """
+
+    lower: Float64[np.ndarray, "s d"]
+    upper: Float64[np.ndarray, "s d"]
+
+    def __post_init__(self) -> None:
+        if not (self.lower <= self.upper).all():
+            raise ValueError("a lower limit of the bounds lies above its upper limit")
+
+    @classmethod
+    def around(
+        cls,
+        initial: Float64[np.ndarray, "s d"],
+        space: GraspSpace,
+        *,
+        position_m: float = 0.05,
+        rotation_rad: float = 0.157,
+    ) -> "Bounds":
+        """The paper's box: the palm near its initial pose, the joints anywhere within their limits.
+
+        Args:
+            initial: initial grasps.
+            space: grasp space, whose limits hold for every parameter as well.
+            position_m: half width for the palm's position. The paper's "0.1 m cube" is the full width.
+            rotation_rad: half width for the palm's Euler angles. The paper's "0.3 rad" is the full width.
+        """
+        half_width = np.full(space.dim, np.inf)
+        half_width[:3], half_width[3:6] = position_m, rotation_rad
+        return cls(
+            np.maximum(initial - half_width, space.lower), np.minimum(initial + half_width, space.upper)
+        )
+
+    def __getitem__(self, rows: Int[np.ndarray, "m"]) -> "Bounds":
+        """The boxes of some of the starts."""
+        return Bounds(self.lower[rows], self.upper[rows])
+
+    @property
+    def half_width(self) -> Float64[np.ndarray, "s d"]:
+        """Half widths of the boxes."""
+        half_width: Float64[np.ndarray, "s d"] = (self.upper - self.lower) / 2
+        return half_width
+
+    @property
+    def fixed(self) -> Bool[np.ndarray, "s d"]:
+        """Which parameters cannot move at all."""
+        fixed: Bool[np.ndarray, "s d"] = self.lower == self.upper
+        return fixed
+
+    def project(self, theta: Float64[np.ndarray, "*n s d"]) -> Float64[np.ndarray, "*n s d"]:
+        """The nearest point inside each box."""
+        inside: Float64[np.ndarray, "*n s d"] = np.clip(theta, self.lower, self.upper)
+        return inside
+
+    def blocks(
+        self, theta: Float64[np.ndarray, "s d"], direction: Float64[np.ndarray, "s d"]
+    ) -> Bool[np.ndarray, "s d"]:
+        """Which parameters stand at a limit that the direction would cross."""
+        return ((theta >= self.upper) & (direction > 0)) | ((theta <= self.lower) & (direction < 0))
