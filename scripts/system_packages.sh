@@ -31,12 +31,10 @@ nvidia_renders() {
 
 mesa_needed() { ! nvidia_renders && ! recent_enough "$(installed_version $MESA)"; }
 
-apt_install() {
-    as_root env DEBIAN_FRONTEND=noninteractive \
-        apt-get install --yes -qq --no-install-recommends -o Dpkg::Use-Pty=0 "$@" >&2
+apt_update() {
+    say "reading the lists of packages"
+    as_root apt-get update -qq || say "some lists of packages could not be read; going on with the others"
 }
-
-apt_update() { as_root apt-get update -qq || say "some lists of packages could not be read; going on with the others"; }
 
 # The entry for Debian 12's backports, on the mirror that this system already uses.
 backports_source() {
@@ -47,20 +45,25 @@ backports_source() {
         'Signed-By: /usr/share/keyrings/debian-archive-keyring.gpg'
 }
 
-install_mesa() {
-    local candidate
-    candidate=$(apt-cache policy $MESA | sed -n 's/^ *Candidate: //p')
-    if recent_enough "${candidate/(none)/}"; then
-        apt_install $MESA
-    elif [ "$(codename)" = bookworm ]; then
-        if ! apt-cache madison $MESA | grep -q bookworm-backports; then
-            say "adding bookworm-backports in $BACKPORTS_SOURCE"
-            backports_source | as_root tee "$BACKPORTS_SOURCE" >/dev/null
-            apt_update
-        fi
-        apt_install --target-release bookworm-backports $MESA
-    else
-        say "rendering needs $MESA $MESA_NEEDED or newer; this system offers $candidate."
+backports_offered() { apt-cache madison $MESA | grep -q bookworm-backports; }
+
+add_backports() {
+    say "adding bookworm-backports in $BACKPORTS_SOURCE"
+    backports_source | as_root tee "$BACKPORTS_SOURCE" >/dev/null
+    apt_update
+}
+
+# Installs packages; Mesa's must all come from one release, so backports are preferred for all where they are used.
+install() {
+    local from=()
+    apt_update
+    if [[ " $* " == *" $MESA "* ]] && [ "$(codename)" = bookworm ] && ! backports_offered; then add_backports; fi
+    if backports_offered; then from=(--target-release bookworm-backports); fi
+    say "installing $*"
+    as_root env DEBIAN_FRONTEND=noninteractive \
+        apt-get install --yes -qq --no-install-recommends -o Dpkg::Use-Pty=0 "${from[@]}" "$@" >&2
+    if mesa_needed; then
+        say "rendering needs $MESA $MESA_NEEDED or newer; this system offers $(installed_version $MESA)."
         say "Install a newer one, or the Vulkan driver of your graphics card, and run the same command again."
         exit 1
     fi
@@ -70,9 +73,9 @@ print_commands() {
     say "missing: $*"
     say "type this, then run the same command again:"
     local from=""
-    if [ "$(codename)" = bookworm ] && mesa_needed; then
-        printf "    sudo tee %s >/dev/null <<'END'\n%s\nEND\n" "$BACKPORTS_SOURCE" "$(backports_source)" >&2
+    if [ "$(codename)" = bookworm ]; then
         from="--target-release bookworm-backports "
+        printf "    sudo tee %s >/dev/null <<'END'\n%s\nEND\n" "$BACKPORTS_SOURCE" "$(backports_source)" >&2
     fi
     printf '    sudo apt-get update\n    sudo apt-get install %s%s\n' "$from" "$*" >&2
 }
@@ -86,23 +89,13 @@ main() {
     for package in "${LIBRARIES[@]}" "$@"; do
         [ -n "$(installed_version "$package")" ] || missing+=("$package")
     done
-    if [ ${#missing[@]} = 0 ] && ! mesa_needed; then return; fi
-
+    if mesa_needed; then missing+=("$MESA"); fi
+    if [ ${#missing[@]} = 0 ]; then return; fi
     if ! can_be_root; then
-        if mesa_needed; then missing+=("$MESA"); fi
         print_commands "${missing[@]}"
         exit 1
     fi
-    say "reading the lists of packages"
-    apt_update
-    if [ ${#missing[@]} -gt 0 ]; then
-        say "installing ${missing[*]}"
-        apt_install "${missing[@]}"
-    fi
-    if mesa_needed; then
-        say "installing Mesa's Vulkan drivers"
-        install_mesa
-    fi
+    install "${missing[@]}"
 }
 
 main "$@" </dev/null
