@@ -45,7 +45,7 @@ backports_source() {
         'Signed-By: /usr/share/keyrings/debian-archive-keyring.gpg'
 }
 
-backports_offered() { apt-cache madison $MESA | grep -q bookworm-backports; }
+backports_offered() { [[ "$(apt-cache madison $MESA)" == *bookworm-backports* ]]; }
 
 add_backports() {
     say "adding bookworm-backports in $BACKPORTS_SOURCE"
