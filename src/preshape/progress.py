@@ -4,7 +4,6 @@ import logging
 import sys
 import time
 from types import TracebackType
-from typing import Self
 
 from tqdm import tqdm
 
@@ -29,7 +28,7 @@ class Progress:
         terminal = sys.stderr.isatty()
         self._bar = tqdm(total=total, desc=what, unit=unit, dynamic_ncols=True) if terminal else None
 
-    def __enter__(self) -> Self:
+    def __enter__(self) -> "Progress":
         return self
 
     def __exit__(

@@ -14,6 +14,7 @@ from preshape.data.grasp_dataset import GraspBatch, GraspDataset
 from preshape.data.images import PatchCache
 from preshape.data.scene import SceneRenderer
 from preshape.data.tables import data_hash, read_data_set
+from preshape.data.trial_table import TableOrigin
 from preshape.errors import InputError
 from preshape.grasps.space import GraspSpace
 
@@ -40,7 +41,7 @@ class GraspDataModule(lightning.LightningDataModule):
 
     Args:
         folder: the data set: `scenes.parquet` and `trials.parquet`.
-        robot: name of the robot whose trials they must be.
+        origin: robot, object set and camera that they must have been collected with.
         space: grasp space of theta.
         renderer: makes the images of the scenes.
         cache: folder of the rendered patches.
@@ -57,7 +58,7 @@ class GraspDataModule(lightning.LightningDataModule):
         self,
         *,
         folder: str | Path,
-        robot: str,
+        origin: TableOrigin,
         space: GraspSpace,
         renderer: SceneRenderer,
         cache: str | Path,
@@ -65,24 +66,25 @@ class GraspDataModule(lightning.LightningDataModule):
         batches: BatchSettings,
     ) -> None:
         super().__init__()
-        self._folder, self._robot, self._space = Path(folder), robot, space
+        self._folder, self._origin, self._space = Path(folder), origin, space
         self._cache = PatchCache(cache, renderer)
-        self._hold_out, self._batches = hold_out, batches
+        self._hold_out, self.batches = hold_out, batches
 
     def setup(self, stage: str | None = None) -> None:
         """Read the tables, render what is not rendered yet, and split; does nothing the second time.
 
         Raises:
-            InputError: if a table cannot be used, is of another robot, or is too small.
+            InputError: if a table cannot be used, was collected with something else, or is too small.
         """
         if hasattr(self, "data_hash"):
             return
         scenes, trials = read_data_set(self._folder, self._space)
-        if trials.origin.robot != self._robot:
+        if trials.origin != self._origin:
             raise InputError(
-                f"The trials were collected with robot {trials.origin.robot}, not {self._robot}",
+                f"The trials were collected with {_choices(trials.origin)}, "
+                f"but the configuration chose {_choices(self._origin)}",
                 where=self._folder,
-                fix=f"choose a data set of {self._robot}, or the robot {trials.origin.robot}",
+                fix=f"choose {_choices(trials.origin)}, or another dataset",
             )
         executed = trials.executed
         split = split_trials(executed, self._hold_out)
@@ -97,7 +99,7 @@ class GraspDataModule(lightning.LightningDataModule):
 
     def train_dataloader(self) -> DataLoader[GraspBatch]:
         """Random batches with enough positives."""
-        settings = self._batches
+        settings = self.batches
         batches = PositiveBatches(
             self.train.trials.lifted,
             batch_size=settings.batch_size,
@@ -109,11 +111,11 @@ class GraspDataModule(lightning.LightningDataModule):
 
     def val_dataloader(self) -> DataLoader[GraspBatch]:
         """The validation trials in order."""
-        return _loader(self.validation, InOrder(len(self.validation), self._batches.batch_size))
+        return _loader(self.validation, InOrder(len(self.validation), self.batches.batch_size))
 
     def test_dataloader(self) -> DataLoader[GraspBatch]:
         """The test trials in order."""
-        return _loader(self.test, InOrder(len(self.test), self._batches.batch_size))
+        return _loader(self.test, InOrder(len(self.test), self.batches.batch_size))
 
     def predict_dataloader(self) -> DataLoader[GraspBatch]:
         """The test trials in order."""
@@ -123,3 +125,7 @@ class GraspDataModule(lightning.LightningDataModule):
 def _loader(dataset: GraspDataset, batches: Sampler[list[int]]) -> DataLoader[GraspBatch]:
     # The sampler already yields whole batches, and the data set looks them up at once.
     return DataLoader(dataset, sampler=batches, batch_size=None)
+
+
+def _choices(origin: TableOrigin) -> str:
+    return f"robot={origin.robot} objects={origin.object_set} camera={origin.camera}"

@@ -42,7 +42,7 @@ class GraspDataset(Dataset[GraspBatch]):
         self._scenes = scenes
         self._cache = cache
         self.theta: Float[Tensor, "n d"] = torch.as_tensor(trials.reached, dtype=torch.float32)
-        self.labels: Float[Tensor, "n"] = torch.as_tensor(trials.lifted, dtype=torch.float32)
+        self.labels: Float[Tensor, "n"] = torch.as_tensor(trials.lifted.astype(np.float32))
 
     def __len__(self) -> int:
         return len(self.trials)

@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -41,15 +42,13 @@ class PatchCache:
         self._renderer = renderer
         self._segmentation = segmentation or SegmentationSettings()
 
+    @cached_property
+    def _origin(self) -> list[object]:
+        return [self._renderer.fingerprint, asdict(self._segmentation), PERCEPTION_VERSION]
+
     def path(self, scene: Scene) -> Path:
         """Where the patch of a scene lies, or would lie."""
-        origin = {
-            "scene": asdict(scene),
-            "renderer": self._renderer.fingerprint,
-            "segmentation": asdict(self._segmentation),
-            "perception": PERCEPTION_VERSION,
-        }
-        text = json.dumps(origin, sort_keys=True, default=np.ndarray.tolist)
+        text = json.dumps([asdict(scene), self._origin], sort_keys=True, default=np.ndarray.tolist)
         digest = hashlib.sha256(text.encode()).hexdigest()
         return self._folder / digest[:2] / f"{digest}.npy"
 

@@ -1,7 +1,7 @@
 """A scene: one object at rest on the table before one camera. Everything that an image is a function of."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -29,6 +29,7 @@ class Scene:
     seed: int
 
 
+@runtime_checkable
 class SceneRenderer(Protocol):
     """Makes the image of a scene; a pure function of the scene."""
 

@@ -1,0 +1,82 @@
+"""What a training shows, keeps track of and survives."""
+
+from pathlib import Path
+
+import lightning
+from lightning.pytorch.callbacks import Callback
+
+from preshape.files import atomic_path
+from preshape.progress import Progress
+from preshape.tracking import TrackedRun
+
+SMOOTHING = 0.98
+"""Share of the old value in the running mean of the loss."""
+
+
+class ShowProgress(Callback):
+    """Iterations done, time left, loss and validation AUC."""
+
+    def __init__(self) -> None:
+        self._progress: Progress | None = None
+        self._loss = float("nan")
+
+    def on_train_start(self, trainer: lightning.Trainer, pl_module: lightning.LightningModule) -> None:
+        """Begin with the iterations that are still to do."""
+        left = int(trainer.max_steps) - trainer.global_step
+        self._progress = Progress("Training", left, "iterations").__enter__()
+
+    def on_train_batch_end(
+        self,
+        trainer: lightning.Trainer,
+        pl_module: lightning.LightningModule,
+        outputs: object,
+        batch: object,
+        batch_idx: int,
+    ) -> None:
+        """One more."""
+        assert self._progress is not None
+        assert isinstance(outputs, dict)
+        loss = float(outputs["loss"])
+        self._loss = loss if self._loss != self._loss else SMOOTHING * self._loss + (1 - SMOOTHING) * loss
+        auc = trainer.callback_metrics.get("val_auc")
+        validation = "" if auc is None else f", validation AUC {float(auc):.3f}"
+        self._progress.advance(1, f"loss {self._loss:.3f}{validation}")
+
+    def teardown(self, trainer: lightning.Trainer, pl_module: lightning.LightningModule, stage: str) -> None:
+        """Leave the terminal tidy, also after an interrupt."""
+        if self._progress is not None:
+            self._progress.__exit__(None, None, None)
+            self._progress = None
+
+
+class TrackCurves(Callback):
+    """Sends the curves of every epoch to the tracked run.
+
+    Args:
+        run: where they are kept.
+    """
+
+    def __init__(self, run: TrackedRun) -> None:
+        self._run = run
+
+    def on_train_epoch_end(self, trainer: lightning.Trainer, pl_module: lightning.LightningModule) -> None:
+        """One point on each curve."""
+        values = {name: float(value) for name, value in trainer.callback_metrics.items()}
+        values["learning_rate"] = trainer.optimizers[0].param_groups[0]["lr"]
+        self._run.log(values, trainer.global_step)
+
+
+class Resumable(Callback):
+    """Saves the state of the training after every epoch, whole or not at all.
+
+    Args:
+        path: the file; `Trainer.fit` goes on from there.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    def on_train_epoch_end(self, trainer: lightning.Trainer, pl_module: lightning.LightningModule) -> None:
+        """Save."""
+        with atomic_path(self._path) as temporary:
+            trainer.save_checkpoint(temporary)

@@ -1,0 +1,171 @@
+"""Training a success network and measuring it on held-out trials."""
+
+import hashlib
+import logging
+import warnings
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import lightning
+import numpy as np
+import torch
+from jaxtyping import Float64
+from safetensors.torch import save
+from torch.utils.data import DataLoader
+
+from preshape.checkpoints import save_weights, sidecar_path
+from preshape.data.data_module import GraspDataModule
+from preshape.data.grasp_dataset import GraspBatch
+from preshape.data.trial_table import TrialTable
+from preshape.evaluation.metrics import ClassificationMetrics, classification_metrics
+from preshape.evaluation.roc import save_roc
+from preshape.files import atomic_path, write_json
+from preshape.models.callbacks import Resumable, ShowProgress, TrackCurves
+from preshape.models.lightning_module import GraspLightningModule, LearningSettings
+from preshape.models.success_model import SuccessModel
+from preshape.provenance import git_revision, provenance
+from preshape.tracking import TrackedRun
+
+log = logging.getLogger(__name__)
+
+WEIGHTS_FILE = "model.safetensors"
+REPORT_FILES = ("predictions.parquet", "roc.png", "metrics.json")
+
+
+@dataclass(frozen=True)
+class TrainerSettings:
+    """How and where to train.
+
+    Args:
+        learning: how the weights are fitted.
+        accelerator: `cpu`, `gpu` or `auto`.
+        precision: Lightning's name of the arithmetic, `32-true` or `bf16-mixed`.
+    """
+
+    learning: LearningSettings
+    accelerator: str
+    precision: str
+
+
+@dataclass(frozen=True)
+class TrainingResult:
+    """What a training came to.
+
+    Args:
+        metrics: figures on the test trials.
+        weights: file of the trained weights.
+    """
+
+    metrics: ClassificationMetrics
+    weights: Path
+
+
+def train(
+    model: SuccessModel, data: GraspDataModule, settings: TrainerSettings, folder: Path, run: TrackedRun
+) -> TrainingResult:
+    """Fit a network to the training trials and measure it on the test trials.
+
+    A training that was interrupted goes on where it was, if it is started again with the same settings, data
+    and folder. Everything is written at the end: weights with sidecar, predictions, ROC picture, and last the
+    metrics.
+
+    Args:
+        model: the network with its initial weights.
+        data: the trials.
+        settings: how and where to train.
+        folder: where the files go.
+        run: keeps curves and files.
+
+    Raises:
+        InputError: if the data cannot be used or the files cannot be written.
+    """
+    data.setup()
+    model.fit_statistics(data.train.patches(), data.train.theta)
+    unfinished = folder / f"unfinished-{_identity(model, data, settings)}.ckpt"
+    _fit(model, data, settings, unfinished, run)
+    result = _measure(model, data, settings.learning, folder, run)
+    unfinished.unlink(missing_ok=True)
+    return result
+
+
+def predict(model: SuccessModel, loader: DataLoader[GraspBatch]) -> Float64[np.ndarray, "n"]:
+    """Success probabilities of all trials of a loader, in its order."""
+    model.eval()
+    weights = next(model.parameters())
+    with torch.inference_mode():
+        logits = [model(batch.patch.to(weights), batch.theta.to(weights)) for batch in loader]
+    return torch.sigmoid(torch.cat(logits).double()).cpu().numpy()
+
+
+def _fit(
+    model: SuccessModel, data: GraspDataModule, settings: TrainerSettings, unfinished: Path, run: TrackedRun
+) -> None:
+    _quieten_lightning()
+    trainer = lightning.Trainer(
+        accelerator=settings.accelerator,
+        devices=1,
+        precision=settings.precision,
+        max_steps=settings.learning.iterations,
+        max_epochs=-1,
+        limit_val_batches=None if len(data.validation) else 0,
+        num_sanity_val_steps=0,
+        callbacks=[ShowProgress(), TrackCurves(run), Resumable(unfinished)],
+        logger=False,
+        enable_checkpointing=False,
+        enable_progress_bar=False,
+        enable_model_summary=False,
+        default_root_dir=unfinished.parent,
+    )
+    going_on = unfinished.is_file()
+    if going_on:
+        log.info("Going on with the training that was interrupted: %s", unfinished)
+    trainer.fit(
+        GraspLightningModule(model, settings.learning),
+        datamodule=data,
+        ckpt_path=unfinished if going_on else None,
+        weights_only=True,
+    )
+
+
+def _measure(
+    model: SuccessModel, data: GraspDataModule, settings: LearningSettings, folder: Path, run: TrackedRun
+) -> TrainingResult:
+    """Metrics on the test trials; writes and keeps all files, the metrics last."""
+    seed = settings.seed
+    trials = data.test.trials
+    success_prob = predict(model, data.test_dataloader())
+    metrics = classification_metrics(
+        trials.lifted, success_prob, rng=np.random.default_rng(seed), groups=trials.scene_ids
+    )
+    weights = folder / WEIGHTS_FILE
+    save_weights(
+        weights, model, data_hash=data.data_hash, git_revision=git_revision(), metrics=metrics.to_dict()
+    )
+    _save_predictions(folder / "predictions.parquet", trials, success_prob)
+    save_roc(folder / "roc.png", trials.lifted, success_prob, metrics)
+    write_json(folder / "metrics.json", {**provenance(seed), "model": model.name, **metrics.to_dict()})
+    run.log({f"test_{name}": value for name, value in asdict(metrics).items()}, settings.iterations)
+    for file in (weights, sidecar_path(weights), *(folder / name for name in REPORT_FILES)):
+        run.keep(file)
+    return TrainingResult(metrics, weights)
+
+
+def _save_predictions(path: Path, trials: TrialTable, success_prob: Float64[np.ndarray, "n"]) -> None:
+    columns = trials.rows[["trial_id", "scene_id", "object_id"]]
+    with atomic_path(path) as temporary:
+        columns.assign(lifted=trials.lifted, success_prob=success_prob).to_parquet(temporary, index=False)
+
+
+def _identity(model: SuccessModel, data: GraspDataModule, settings: TrainerSettings) -> str:
+    """Digest of all that decides the weights: initial weights, statistics, settings, data."""
+    digest = hashlib.sha256(save({name: value.contiguous() for name, value in model.state_dict().items()}))
+    digest.update(repr((settings, data.batches, data.data_hash)).encode())
+    digest.update(data.train.trials.rows["trial_id"].to_numpy().tobytes())
+    return digest.hexdigest()[:16]
+
+
+def _quieten_lightning() -> None:
+    """Leave out what Lightning says about hardware, workers and its maker's products."""
+    for name in ("lightning.pytorch", "lightning.fabric"):
+        logging.getLogger(name).setLevel(logging.ERROR)
+    warnings.filterwarnings("ignore", module="lightning")

@@ -1,0 +1,64 @@
+"""From a folder to batches."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from synthetic_scenes import ORIGIN, BoxRenderer, allegro_space, write_data_set
+
+from preshape.data.data_module import BatchSettings, GraspDataModule
+from preshape.data.folds import HoldOut
+from preshape.data.tables import read_trials
+from preshape.data.trial_table import TableOrigin
+from preshape.errors import InputError
+
+N_SCENES = 15
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("data")
+    write_data_set(folder, N_SCENES)
+    return folder
+
+
+def make_module(folder: Path, origin: TableOrigin = ORIGIN) -> GraspDataModule:
+    return GraspDataModule(
+        folder=folder,
+        origin=origin,
+        space=allegro_space(),
+        renderer=BoxRenderer(),
+        cache=folder / "cache",
+        hold_out=HoldOut("scenes", fold=0, validation_fraction=0.25, seed=0),
+        batches=BatchSettings(batch_size=4, min_positives=1, batches_per_epoch=5, seed=0),
+    )
+
+
+def test_executed_trials_become_batches_of_what_was_reached(folder: Path) -> None:
+    data = make_module(folder)
+    data.setup()
+    executed = read_trials(folder / "trials.parquet", allegro_space()).executed
+    assert len(data.train) + len(data.validation) + len(data.test) == len(executed)
+    known = torch.as_tensor(executed.reached, dtype=torch.float32)
+    for batch in data.train_dataloader():
+        assert batch.patch.shape == (4, 8, 400, 400)
+        assert batch.label.sum() >= 1
+        rows = [int((known == theta).all(dim=1).nonzero()) for theta in batch.theta]
+        assert batch.label.bool().tolist() == executed.lifted[rows].tolist()
+
+
+def test_every_grasp_comes_with_the_patch_of_its_own_scene(folder: Path) -> None:
+    data = make_module(folder)
+    data.setup()
+    scene_ids = np.unique(data.test.trials.scene_ids).tolist()
+    patches = dict(zip(scene_ids, data.test.patches(), strict=True))
+    batches = list(data.test_dataloader())
+    together = torch.cat([batch.patch for batch in batches])
+    for patch, scene_id in zip(together, data.test.trials.scene_ids.tolist(), strict=True):
+        assert torch.equal(patch, patches[scene_id])
+
+
+def test_a_table_collected_with_something_else_is_refused(folder: Path) -> None:
+    with pytest.raises(InputError, match=r"camera=kinect.*camera=perfect"):
+        make_module(folder, TableOrigin("lbr4_allegro", "grocery", "perfect")).setup()
