@@ -8,6 +8,7 @@ from jaxtyping import Bool, Float
 from scipy.spatial import ConvexHull
 
 from preshape.errors import InputError
+from preshape.geometry.pose import make_pose
 from preshape.perception.point_cloud import largest_cluster
 
 
@@ -126,3 +127,20 @@ def _fit_plane(points: Float[np.ndarray, "n 3"], up: Float[np.ndarray, "3"]) -> 
     normal = np.linalg.eigh(np.cov((points - centre).T))[1][:, 0]
     normal = normal if normal @ up >= 0 else -normal
     return np.append(normal, -normal @ centre)
+
+
+def camera_pose_over_table(points: Float[np.ndarray, "h w 3"]) -> Float[np.ndarray, "4 4"]:
+    """T_world_camera of a camera of unknown pose that looks at a table, from organised points (m).
+
+    The table's top is z = 0 under the camera, and x is the image's right along the table.
+
+    Raises:
+        InputError: no large plane that could be a table is in the centre of the view.
+    """
+    # Whether the camera looks level or straight down, the table's normal is within 45 degrees of this.
+    up = np.array([0.0, -1.0, -1.0]) / np.sqrt(2)
+    plane = find_table(points, up, TableSettings(max_tilt_rad=np.radians(55))).plane
+    x = np.array([1.0, 0.0, 0.0]) - plane[0] * plane[:3]
+    x /= np.linalg.norm(x)
+    axes = np.stack((x, np.cross(plane[:3], x), plane[:3]))
+    return make_pose(axes, np.array([0.0, 0.0, plane[3]]))
