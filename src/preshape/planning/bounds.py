@@ -8,6 +8,19 @@ from jaxtyping import Bool, Float64, Int
 from preshape.grasps.space import GraspSpace
 
 
+@dataclass(frozen=True)
+class BoxSize:
+    """Half widths of the box around the palm pose of an initial grasp.
+
+    Args:
+        position_m: for the palm's position. The paper's "0.1 m cube" is the full width.
+        rotation_rad: for the palm's Euler angles. The paper's "0.3 rad" is the full width.
+    """
+
+    position_m: float = 0.05
+    rotation_rad: float = 0.157
+
+
 @dataclass(frozen=True, eq=False)
 class Bounds:
     """Limits of theta, one box for each start, in float64 and kept to the last bit.
@@ -27,27 +40,12 @@ class Bounds:
             raise ValueError("a lower limit of the bounds lies above its upper limit")
 
     @classmethod
-    def around(
-        cls,
-        initial: Float64[np.ndarray, "s d"],
-        space: GraspSpace,
-        *,
-        position_m: float = 0.05,
-        rotation_rad: float = 0.157,
-    ) -> "Bounds":
-        """The paper's box: the palm near its initial pose, the joints anywhere within their limits.
-
-        Args:
-            initial: initial grasps.
-            space: grasp space, whose limits hold for every parameter as well.
-            position_m: half width for the palm's position. The paper's "0.1 m cube" is the full width.
-            rotation_rad: half width for the palm's Euler angles. The paper's "0.3 rad" is the full width.
-        """
+    def around(cls, initial: Float64[np.ndarray, "s d"], space: GraspSpace, size: BoxSize) -> "Bounds":
+        """The paper's box: the palm near its initial pose, the joints anywhere within their limits."""
         half_width = np.full(space.dim, np.inf)
-        half_width[:3], half_width[3:6] = position_m, rotation_rad
-        return cls(
-            np.maximum(initial - half_width, space.lower), np.minimum(initial + half_width, space.upper)
-        )
+        half_width[:3], half_width[3:6] = size.position_m, size.rotation_rad
+        lower = np.maximum(initial - half_width, space.lower)
+        return cls(lower, np.minimum(initial + half_width, space.upper))
 
     def __getitem__(self, rows: Int[np.ndarray, "m"]) -> "Bounds":
         """The boxes of some of the starts."""

@@ -1,6 +1,6 @@
 """What a planner is."""
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float64
@@ -10,6 +10,7 @@ from preshape.planning.objective import Objective
 from preshape.planning.result import PlanResult
 
 
+@runtime_checkable
 class Planner(Protocol):
     """Turns initial grasps into better ones.
 

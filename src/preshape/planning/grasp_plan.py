@@ -1,0 +1,38 @@
+"""The grasps planned for one view."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from preshape.data.trial import Face
+from preshape.grasps.space import GraspSpace
+from preshape.planning.result import PlanResult
+
+
+@dataclass(frozen=True, eq=False)
+class GraspPlan:
+    """What a planner found for one view, with all that is needed to execute it.
+
+    Args:
+        planner: name of the planner.
+        space: grasp space of theta.
+        faces: face of the bounding box that each start aimed at; decides how the hand closes.
+        result: the grasps, with palm poses in the camera frame.
+        T_world_camera: pose of the camera.
+    """
+
+    planner: str
+    space: GraspSpace
+    faces: tuple[Face, ...]
+    result: PlanResult
+    T_world_camera: Float[np.ndarray, "4 4"]
+
+    def palm_pose(self, start: int) -> Float[np.ndarray, "4 4"]:
+        """T_camera_palm of a planned grasp."""
+        return self.space.palm_pose(self.result.theta[start])
+
+    def palm_pose_in_world(self, start: int) -> Float[np.ndarray, "4 4"]:
+        """T_world_palm of a planned grasp."""
+        pose: Float[np.ndarray, "4 4"] = self.T_world_camera @ self.palm_pose(start)
+        return pose

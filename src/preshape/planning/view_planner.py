@@ -1,0 +1,68 @@
+"""From an RGB-D view to ranked grasps."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import torch
+
+from preshape.grasps.heuristic import HeuristicSettings, InitialGrasp, heuristic_grasps
+from preshape.grasps.space import GraspSpace
+from preshape.models.success_model import SuccessModel
+from preshape.perception.image import eight_channel_image
+from preshape.perception.observation import Observation
+from preshape.perception.patch import object_centre, object_patch
+from preshape.perception.segmentation import SegmentationSettings, SegmentedObject, segment
+from preshape.planning.bounds import Bounds, BoxSize
+from preshape.planning.grasp_plan import GraspPlan
+from preshape.planning.objective import Objective, SuccessObjective, UnknownSuccess
+from preshape.planning.planner import Planner
+
+
+@dataclass(frozen=True, eq=False)
+class ViewPlanner:
+    """Plans grasps for the object in a view: segmentation, heuristic grasps, objective, planner.
+
+    Args:
+        name: name of the planner, for plans and tables.
+        method: the planner.
+        box: how far it may go from an initial grasp.
+        space: what theta means.
+        heuristic, segmentation: how initial grasps are made.
+        model: a trained network; None if nothing is known about success.
+    """
+
+    name: str
+    method: Planner
+    box: BoxSize
+    space: GraspSpace
+    heuristic: HeuristicSettings
+    model: SuccessModel | None = None
+    segmentation: SegmentationSettings = field(default_factory=SegmentationSettings)
+
+    def plan(self, observation: Observation, rng: np.random.Generator) -> GraspPlan:
+        """Plan from heuristic initial grasps.
+
+        Raises:
+            InputError: if no object can be made out on a table.
+        """
+        segmented = segment(observation, self.segmentation)
+        initial = heuristic_grasps(segmented, self.space, self.heuristic, observation.camera, rng)
+        return self.plan_from(observation, segmented, initial)
+
+    def plan_from(
+        self, observation: Observation, segmented: SegmentedObject, initial: Sequence[InitialGrasp]
+    ) -> GraspPlan:
+        """Plan from initial grasps that are there already, so that planners can be compared."""
+        theta = np.stack([grasp.theta for grasp in initial])
+        bounds = Bounds.around(theta, self.space, self.box)
+        result = self.method.plan(self._objective(observation, segmented), theta, bounds)
+        faces = tuple(grasp.face for grasp in initial)
+        return GraspPlan(self.name, self.space, faces, result, observation.camera.T_world_camera)
+
+    def _objective(self, observation: Observation, segmented: SegmentedObject) -> Objective:
+        if self.model is None:
+            return UnknownSuccess()
+        centre = object_centre(segmented, observation.camera)
+        patch = object_patch(eight_channel_image(observation), centre)
+        return SuccessObjective(self.model, torch.from_numpy(patch))
