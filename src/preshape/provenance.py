@@ -9,7 +9,10 @@ from typing import Any
 
 from preshape.paths import project_root
 
-NAMED_PACKAGES = ("torch", "lightning", "numpy", "sapien", "open3d", "ompl", "pin", "coal", "toppra", "mlflow")
+NAMED_PACKAGES = (
+    *("torch", "lightning", "numpy", "sapien", "open3d"),
+    *("ompl", "pin", "coal", "toppra", "mlflow"),
+)
 """Packages whose version can change a number."""
 
 
