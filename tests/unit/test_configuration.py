@@ -8,7 +8,6 @@ import pytest
 import trimesh
 import yaml
 from hydra import compose, initialize_config_dir
-from hydra.core.hydra_config import HydraConfig
 from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
 
@@ -26,17 +25,15 @@ COMMANDS = [
 GROUPS = sorted(path for path in CONF.iterdir() if path.is_dir() and any(path.glob("*.yaml")))
 
 
-def compose_command(command: str, *overrides: str) -> DictConfig:
+def compose_command(command: str, *overrides: str, with_hydra: bool = False) -> DictConfig:
     with initialize_config_dir(str(CONF), version_base="1.3"):
-        cfg = compose(command, list(overrides), return_hydra_config=True)
-    HydraConfig.instance().set_config(cfg)
-    return cfg
+        return compose(command, list(overrides), return_hydra_config=with_hydra)
 
 
 def choices() -> Iterator[tuple[str, str, str]]:
     """Every (command, group, option) that a user can choose."""
     for command in COMMANDS:
-        chosen = compose_command(command).hydra.runtime.choices
+        chosen = compose_command(command, with_hydra=True).hydra.runtime.choices
         for group in GROUPS:
             for key in chosen:
                 if key.split("@")[0] == group.name:
@@ -44,12 +41,6 @@ def choices() -> Iterator[tuple[str, str, str]]:
 
 
 CHOICES = sorted(set(choices()))
-
-
-@pytest.fixture(autouse=True)
-def forget_the_composition() -> Iterator[None]:
-    yield
-    HydraConfig.instance().cfg = None
 
 
 @pytest.fixture(scope="module")
@@ -102,10 +93,10 @@ def test_no_option_is_unreachable() -> None:
 def test_every_option_composes_and_builds(
     command: str, group: str, option: str, mesh_folder: Path, tmp_path: Path
 ) -> None:
-    cfg = compose_command(command, f"{group}={option}", f"paths.cache={tmp_path}")
-    cfg = OmegaConf.masked_copy(cfg, [key for key in cfg if key != "hydra"])
-    if OmegaConf.is_missing(cfg, "objects.root"):
-        cfg.objects.root = str(mesh_folder)
+    overrides = [f"{group}={option}", f"paths.cache={tmp_path}"]
+    given = {"objects.root": mesh_folder}
+    missing = OmegaConf.missing_keys(compose_command(command, *overrides)) & set(given)
+    cfg = compose_command(command, *overrides, *(f"{key}={given[key]}" for key in missing))
     name = group.split("@")[-1]
     for part in buildable(OmegaConf.select(cfg, name)):
         assert instantiate(part) is not None
