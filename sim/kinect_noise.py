@@ -1,11 +1,11 @@
 """What a Kinect makes of a true depth image.
 
 The first Kinect sees a projected dot pattern with an infrared camera and matches it with a stored reference.
-Its errors follow from that: the measured quantity is disparity, in whole steps, so that noise and steps of depth
-grow with the square of the distance (Khoshelham and Elberink, "Accuracy and resolution of Kinect depth data for
-indoor mapping applications", Sensors 2012); surfaces seen at a grazing angle are noisier (Nguyen, Izadi and
-Lovell, "Modeling Kinect sensor noise for improved 3D reconstruction and tracking", 3DIMPVT 2012); edges are
-ragged by about a pixel (same); and what the projector cannot see stays dark.
+Its errors follow from that. What is measured is disparity, in whole steps, so that noise and steps of depth
+grow with the square of the distance (Khoshelham and Elberink, "Accuracy and resolution of Kinect depth data
+for indoor mapping applications", Sensors 2012). Surfaces seen at a grazing angle are noisier, and edges are
+ragged by a pixel or so (Nguyen, Izadi and Lovell, "Modeling Kinect sensor noise for improved 3D
+reconstruction and tracking", 3DIMPVT 2012). What the projector cannot see stays dark.
 """
 
 from dataclasses import dataclass
@@ -22,8 +22,8 @@ class KinectNoise:
     """The noise of a Kinect's depth.
 
     Args:
-        disparity_m: depth is this over the disparity in whole steps: 351.3 m, so that a step is 2.85 mm at 1 m
-            (Khoshelham and Elberink, m / (f b) = 2.85e-5 per cm).
+        disparity_m: depth is this over the disparity in whole steps: 351.3 m, so that a step is 2.85 mm at
+            1 m (Khoshelham and Elberink, m / (f b) = 2.85e-5 per cm).
         disparity_sigma: standard deviation of the disparity (steps). Together with the steps, 0.4 gives their
             random error of 1.4 mm at 1 m.
         correlation_px: radius over which neighbours share their error, as the matching window makes them.

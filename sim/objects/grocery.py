@@ -2,14 +2,16 @@
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from preshape.errors import InputError
-from sim.objects import colour, loft, object_model, package_shapes, shading
+from sim.objects import colour, loft, object_model, package_profiles, package_shapes, shading
 from sim.objects.colour import colour_from_hex
 from sim.objects.loft import convex_parts, visual_parts
-from sim.objects.object_model import PAPER_DENSITY, PAPER_FRICTION, ObjectModel, volume_and_centroid
+from sim.objects.object_model import PAPER_FRICTION, ObjectModel, volume_and_centroid
+from sim.objects.package_profiles import PROFILES
 from sim.objects.package_shapes import lofts
 
 
@@ -18,7 +20,7 @@ class GroceryItem:
     """One row of the grocery table.
 
     Args:
-        family: key of `package_shapes.PROFILES`.
+        family: key of `package_profiles.PROFILES`.
         size_mm: along x, y and z, standing on the predetermined support surface.
         colours: sRGB "#rrggbb" of each material of the family.
     """
@@ -32,6 +34,24 @@ def _item(family: str, size_mm: tuple[float, float, float], **colours: str) -> G
     return GroceryItem(family, size_mm, colours)
 
 
+# Mass of a full package over its outer volume (kg/m3): liquids nearly fill it, dry goods leave much air.
+FAMILY_DENSITIES: Mapping[str, float] = {
+    "box": 250.0,
+    "can": 1000.0,
+    "flat_can": 900.0,
+    "drink_can": 1000.0,
+    "snack_can": 180.0,
+    "spray_can": 600.0,
+    "oval_bottle": 950.0,
+    "flip_top_bottle": 950.0,
+    "sauce_bottle": 950.0,
+    "waisted_bottle": 950.0,
+    "pump_bottle": 900.0,
+    "jug": 950.0,
+    "tube": 900.0,
+    "cup": 700.0,
+    "twin_tub": 800.0,
+}
 METAL = "#b9bcc2"
 # Sizes from scans where they are known (boxes +-5 %, bottles +-15 %), else of the item as sold.
 GROCERY_ITEMS: Mapping[str, GroceryItem] = {
@@ -76,14 +96,13 @@ class GrocerySet:
     """The grocery objects as an `ObjectSet`.
 
     Args:
-        density: kg/m3, of the whole body.
+        density: kg/m3, of every object; None weighs each as a full package of its family.
         friction: Coulomb coefficient.
     """
 
-    density: float = PAPER_DENSITY
+    density: float | None = None
     friction: float = PAPER_FRICTION
     name: str = "grocery"
-    _models: dict[str, ObjectModel] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -94,7 +113,7 @@ class GrocerySet:
     def fingerprint(self) -> str:
         """Hash of the table, the shapes and the code that makes solids of them."""
         digest = hashlib.sha256(repr((self.density, self.friction)).encode())
-        for module in (object_model, colour, shading, loft, package_shapes):
+        for module in (object_model, colour, shading, loft, package_shapes, package_profiles):
             digest.update(Path(str(module.__file__)).read_bytes())
         digest.update(Path(__file__).read_bytes())
         return digest.hexdigest()
@@ -103,20 +122,19 @@ class GrocerySet:
         """The model of one object; raises `InputError` for an unknown name."""
         if name not in GROCERY_ITEMS:
             raise InputError(
-                f"the grocery set has no object {name!r}",
+                f"The grocery set has no object {name!r}",
                 where="objects",
                 fix=f"choose one of: {', '.join(self.names)}",
             )
-        if name not in self._models:
-            self._models[name] = build_item(name, GROCERY_ITEMS[name], self.density, self.friction)
-        return self._models[name]
+        return _build(name, self.density or FAMILY_DENSITIES[GROCERY_ITEMS[name].family], self.friction)
 
 
-def build_item(name: str, item: GroceryItem, density: float, friction: float) -> ObjectModel:
-    """The solid that a row of the table describes."""
+@cache
+def _build(name: str, density: float, friction: float) -> ObjectModel:
+    item = GROCERY_ITEMS[name]
     colours = {material: colour_from_hex(code) for material, code in item.colours.items()}
     width, depth, height = (length / 1000 for length in item.size_mm)
-    pieces = lofts(item.family, (width, depth, height), colours)
+    pieces = lofts(PROFILES[item.family], (width, depth, height), colours)
     parts = tuple(part for piece in pieces for part in convex_parts(piece))
     visuals = tuple(part for piece in pieces for part in visual_parts(piece))
     mass = density * volume_and_centroid(parts)[0]

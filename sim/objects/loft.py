@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial import ConvexHull
 
+from sim.objects.colour import LinearColour
 from sim.objects.object_model import VisualPart
 from sim.objects.shading import shaded_part
 
@@ -36,7 +37,7 @@ class Station:
     width: float
     depth: float
     roundness: float
-    colour: tuple[float, float, float]
+    colour: LinearColour
     offset_y: float = 0.0
 
     def ring(self, angles: Float[np.ndarray, "n"]) -> Float[np.ndarray, "n 3"]:
@@ -78,7 +79,7 @@ def convex_parts(loft: Loft) -> list[Float[np.ndarray, "_ 3"]]:
 def visual_parts(loft: Loft) -> list[VisualPart]:
     """The closed surface of the loft, one part per colour."""
     rings = [station.ring(_angles(VISUAL_CORNERS)) for station in loft]
-    strips: dict[tuple[float, float, float], list[Float[np.ndarray, "_ 3 3"]]] = {}
+    strips: dict[LinearColour, list[Float[np.ndarray, "_ 3 3"]]] = {}
     for station, lower, upper in zip(loft, rings, rings[1:], strict=False):
         strips.setdefault(station.colour, []).append(_strip(lower, upper))
     for station, inner, outer in (

@@ -21,6 +21,7 @@ MESH_SUFFIXES = (".glb", ".gltf", ".obj", ".off", ".ply", ".stl")
 IMAGE_SUFFIXES = (".jpeg", ".jpg", ".png")
 LARGEST_M = 1.0
 SMALLEST_M = 0.005
+THINNEST_M = 0.0002
 TEXTURE_PIXELS = 1024
 """Textures are shrunk to this many pixels along a side; the object covers fewer in the image."""
 
@@ -32,7 +33,7 @@ def read_mesh_file(path: Path) -> list[trimesh.Trimesh]:
         InputError: if the file is missing, unreadable or holds no triangles.
     """
     if path.suffix.lower() not in MESH_SUFFIXES:
-        raise _unusable("the mesh is in a format that is not read", path)
+        raise _unusable("The mesh is in a format that is not read", path)
     groups: dict[str, Any] = {}
     if path.suffix.lower() == ".obj":
         groups = {"split_objects": True, "split_groups": True}
@@ -40,29 +41,32 @@ def read_mesh_file(path: Path) -> list[trimesh.Trimesh]:
         scene = trimesh.load_scene(path, process=False, allow_remote=False, **groups)
         meshes = [mesh for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)]
     except Exception as error:  # a broken file surfaces as whatever its reader trips over
-        raise _unusable(f"the mesh cannot be read ({error})", path) from error
+        raise _unusable(f"The mesh cannot be read ({error})", path) from error
     if not meshes:
-        raise _unusable("the mesh holds no triangles", path)
+        raise _unusable("The mesh holds no triangles", path)
     if not all(np.isfinite(mesh.triangles).all() for mesh in meshes):
-        raise _unusable("the mesh has corners that are not finite", path)
+        raise _unusable("The mesh has corners that are not finite", path)
     return meshes
 
 
 def check_size(meshes: Sequence[trimesh.Trimesh], path: Path) -> None:
     """Refuse what cannot be an object for one hand in metres; raises `InputError`."""
-    extent = float(np.ptp(np.concatenate([mesh.bounds for mesh in meshes]), axis=0).max())
+    extents = np.ptp(np.concatenate([mesh.bounds for mesh in meshes]), axis=0)
+    extent = float(extents.max())
     if extent > LARGEST_M:
         raise InputError(
-            f"the mesh is {extent:.4g} m large, which looks like millimetres",
+            f"The mesh is {extent:.4g} m large, which looks like millimetres",
             where=path,
             fix="set objects.scale=0.001 (0.01 if it is in centimetres)",
         )
     if extent < SMALLEST_M:
         raise InputError(
-            f"the mesh is only {extent:.2g} m large, too tiny to grasp",
+            f"The mesh is only {extent:.2g} m large, too tiny to grasp",
             where=path,
             fix="set objects.scale to the length of the mesh's unit in metres",
         )
+    if extents.min() < THINNEST_M:
+        raise InputError("The mesh is flat and encloses nothing", where=path, fix="give a mesh with a volume")
 
 
 def visual_part(mesh: trimesh.Trimesh, plain: LinearColour) -> VisualPart:
@@ -88,7 +92,7 @@ def mean_colour(path: Path) -> LinearColour:
         with Image.open(path) as image:
             pixels = np.asarray(image.convert("RGB").resize((64, 64))).reshape(-1, 3)
     except (OSError, Image.DecompressionBombError) as error:
-        raise InputError("the texture cannot be read", where=path, fix="replace the image") from error
+        raise InputError("The texture cannot be read", where=path, fix="replace the image") from error
     used = pixels[pixels.sum(axis=1) > 0]
     return linear_rgb(used.mean(axis=0) if len(used) else np.zeros(3))
 

@@ -8,7 +8,7 @@ import hashlib
 import logging
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy as np
@@ -33,7 +33,6 @@ log = logging.getLogger(__name__)
 
 URDF_SUFFIX = ".urdf"
 GREY: LinearColour = (0.4, 0.4, 0.4)
-FIX = "set objects.root to a folder of URDFs or meshes, or of sub-folders that hold them"
 
 
 @dataclass(frozen=True)
@@ -43,11 +42,11 @@ class MeshFolder:
     Args:
         root: the folder.
         cache: where convex decompositions are kept.
+        name: name of the set.
         scale: metres per unit of the meshes.
         density: kg/m3, where a URDF gives no mass.
         friction: Coulomb coefficient.
         convex: how finely meshes are decomposed that are not convex.
-        name: name of the set; the folder's own if empty.
 
     Raises:
         InputError: if the folder is missing or holds no objects.
@@ -55,41 +54,58 @@ class MeshFolder:
 
     root: Path
     cache: Path
+    name: str = "mesh_folder"
     scale: float = 1.0
     density: float = PAPER_DENSITY
     friction: float = PAPER_FRICTION
     convex: ConvexSettings = field(default_factory=ConvexSettings)
-    name: str = ""
-    _models: dict[str, ObjectModel] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "root", Path(self.root).expanduser().resolve())
         object.__setattr__(self, "cache", Path(self.cache))
-        object.__setattr__(self, "name", self.name or self.root.name)
         if self.scale <= 0:
             raise InputError(
-                "the scale is not positive",
+                "The scale is not positive",
                 where="objects.scale",
                 fix="give the metres per unit of the meshes",
             )
-        if not self._files:
-            raise InputError("the folder holds no meshes and no URDF", where=self.root, fix=FIX)
+        if not self.files:
+            raise self._unusable("The folder holds no meshes and no URDF")
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the objects, sorted."""
-        return tuple(sorted(self._files))
+        return tuple(sorted(self.files))
 
     @cached_property
     def fingerprint(self) -> str:
         """Hash of the settings and of all files beside which an object lies."""
         settings = (self.scale, self.density, self.friction, astuple(self.convex))
         digest = hashlib.sha256(repr(settings).encode())
-        for folder in sorted({path.parent for path in self._files.values()}):
+        for folder in sorted({path.parent for path in self.files.values()}):
             for path in sorted(path for path in folder.iterdir() if path.is_file()):
                 digest.update(str(path.relative_to(self.root)).encode())
                 digest.update(hashlib.sha256(path.read_bytes()).digest())
         return digest.hexdigest()
+
+    @cached_property
+    def files(self) -> dict[str, Path]:
+        """Name of each object -> its URDF or mesh."""
+        if not self.root.is_dir():
+            raise self._unusable("The folder does not exist")
+        files: dict[str, Path] = {}
+        for folder in (self.root, *sorted(path for path in self.root.iterdir() if path.is_dir())):
+            found = _files_with(folder, (URDF_SUFFIX,)) or _files_with(folder, MESH_SUFFIXES)
+            for path in found:
+                name = self._object_name(path, alone=len(found) == 1)
+                if name in files:
+                    raise InputError(
+                        f"Two files are named for the object {name!r}, the other being {files[name].name}",
+                        where=path,
+                        fix="rename or remove one of them",
+                    )
+                files[name] = path
+        return files
 
     def load(self, name: str) -> ObjectModel:
         """The model of one object.
@@ -99,69 +115,52 @@ class MeshFolder:
         Raises:
             InputError: for an unknown name, and for files that cannot be read or are not in metres.
         """
-        if name not in self._files:
+        if name not in self.files:
+            choices = ", ".join(self.names)
             raise InputError(
-                f"the folder has no object {name!r}",
-                where=self.root,
-                fix=f"choose one of: {', '.join(self.names)}",
+                f"The folder has no object {name!r}", where=self.root, fix=f"choose one of: {choices}"
             )
-        if name not in self._models:
-            self._models[name] = self._read(name, self._files[name])
-        return self._models[name]
+        return _build(self, name)
 
-    def _read(self, name: str, path: Path) -> ObjectModel:
-        urdf = read_object_urdf(path) if path.suffix.lower() == URDF_SUFFIX else bare_mesh(path)
-        collisions, visuals = shapes_that_exist(urdf)
-        solids = [part for mesh in collisions for part in self._placed(mesh)]
-        parts = convex_parts(solids, self.convex, self.cache)
-        colour = folder_colour(path.parent)
-        looks = tuple(
-            visual_part(part, colour or mesh.colour or GREY)
-            for mesh in visuals
-            for part in self._placed(mesh)
-        )
-        mass = urdf.mass_kg or self.density * volume_and_centroid(parts)[0]
-        return stood_up(ObjectModel(name, parts, looks, mass, self.friction).centred())
+    def _object_name(self, path: Path, *, alone: bool) -> str:
+        if path.parent == self.root:
+            return path.stem
+        return path.parent.name if alone else f"{path.parent.name}_{path.stem}"
 
-    @cached_property
-    def _files(self) -> dict[str, Path]:
-        """Object name -> its URDF or mesh."""
-        if not self.root.is_dir():
-            raise InputError("the folder does not exist", where=self.root, fix=FIX)
-        files: dict[str, Path] = {}
-        subfolders = sorted(path for path in self.root.iterdir() if path.is_dir() and path.name[0] != ".")
-        for folder in (self.root, *subfolders):
-            found = _object_files(folder)
-            for path in found:
-                alone = folder != self.root and len(found) == 1
-                name = (
-                    folder.name
-                    if alone
-                    else path.stem
-                    if folder == self.root
-                    else f"{folder.name}_{path.stem}"
-                )
-                if name in files:
-                    raise InputError(
-                        f"two files are named for the object {name!r}, the other being {files[name].name}",
-                        where=path,
-                        fix="rename or remove one of them",
-                    )
-                files[name] = path
-        return files
-
-    def _placed(self, mesh: UrdfMesh) -> list[trimesh.Trimesh]:
-        """The meshes of a file in the object's frame, in metres."""
-        placed = read_mesh_file(mesh.path)
-        pose = mesh.T_link_mesh.copy()
-        pose[:3, 3] *= self.scale
-        for part in placed:
-            part.apply_transform(pose @ np.diag([*(mesh.scale * self.scale), 1.0]))
-        check_size(placed, mesh.path)
-        return placed
+    def _unusable(self, what: str) -> InputError:
+        fix = "set objects.root to a folder of URDFs or meshes, or of sub-folders that hold them"
+        return InputError(what, where=self.root, fix=fix)
 
 
-def shapes_that_exist(urdf: UrdfObject) -> tuple[Sequence[UrdfMesh], Sequence[UrdfMesh]]:
+@cache
+def _build(folder: MeshFolder, name: str) -> ObjectModel:
+    path = folder.files[name]
+    urdf = read_object_urdf(path) if path.suffix.lower() == URDF_SUFFIX else _bare_mesh(path)
+    collisions, visuals = _shapes_that_exist(urdf)
+    solids = [part for mesh in collisions for part in _placed(mesh, folder.scale)]
+    parts = convex_parts(solids, folder.convex, folder.cache)
+    colour = _folder_colour(path.parent)
+    looks = tuple(
+        visual_part(part, colour or mesh.colour or GREY)
+        for mesh in visuals
+        for part in _placed(mesh, folder.scale)
+    )
+    mass = urdf.mass_kg or folder.density * volume_and_centroid(parts)[0]
+    return stood_up(ObjectModel(name, parts, looks, mass, folder.friction).centred())
+
+
+def _placed(mesh: UrdfMesh, scale: float) -> list[trimesh.Trimesh]:
+    """The meshes of a file in the object's frame, in metres."""
+    placed = read_mesh_file(mesh.path)
+    pose = mesh.T_link_mesh.copy()
+    pose[:3, 3] *= scale
+    for part in placed:
+        part.apply_transform(pose @ np.diag([*(mesh.scale * scale), 1.0]))
+    check_size(placed, mesh.path)
+    return placed
+
+
+def _shapes_that_exist(urdf: UrdfObject) -> tuple[Sequence[UrdfMesh], Sequence[UrdfMesh]]:
     """Collision and visual meshes of a URDF whose files may be missing.
 
     A visual mesh that is not there is replaced by another one of the folder. Without visual meshes the
@@ -169,19 +168,9 @@ def shapes_that_exist(urdf: UrdfObject) -> tuple[Sequence[UrdfMesh], Sequence[Ur
     """
     found = (mesh if mesh.path.is_file() else _stand_in(mesh, urdf) for mesh in urdf.visuals)
     visuals = [mesh for mesh in found if mesh is not None]
-    return urdf.collisions or visuals or urdf.visuals, visuals or urdf.collisions
-
-
-def bare_mesh(path: Path) -> UrdfObject:
-    """A mesh file as if a URDF named it."""
-    mesh = UrdfMesh(path, np.ones(3), np.eye(4), None)
-    return UrdfObject(None, (mesh,), (mesh,))
-
-
-def folder_colour(folder: Path) -> LinearColour | None:
-    """Mean colour of the texture beside an object, for meshes that cannot carry it; None without one."""
-    images = sorted(path for path in folder.iterdir() if path.suffix.lower() in IMAGE_SUFFIXES)
-    return mean_colour(images[0]) if images else None
+    colour = next((mesh.colour for mesh in urdf.visuals if mesh.colour), None)
+    shown = visuals or [replace(mesh, colour=colour) for mesh in urdf.collisions]
+    return urdf.collisions or visuals or urdf.visuals, shown
 
 
 def _stand_in(missing: UrdfMesh, urdf: UrdfObject) -> UrdfMesh | None:
@@ -190,15 +179,24 @@ def _stand_in(missing: UrdfMesh, urdf: UrdfObject) -> UrdfMesh | None:
     if not meshes:
         return None
     chosen = min(meshes, key=lambda path: ("visual" not in path.name, "textur" not in path.name, path.name))
-    log.info("%s is missing; %s is shown instead", missing.path, chosen.name)
+    log.debug("%s is missing; %s is shown instead", missing.path, chosen.name)
     return replace(missing, path=chosen)
 
 
-def _object_files(folder: Path) -> list[Path]:
-    return _files_with(folder, (URDF_SUFFIX,)) or _files_with(folder, MESH_SUFFIXES)
+def _bare_mesh(path: Path) -> UrdfObject:
+    """A mesh file as if a URDF named it."""
+    mesh = UrdfMesh(path, np.ones(3), np.eye(4), None)
+    return UrdfObject(None, (mesh,), (mesh,))
+
+
+def _folder_colour(folder: Path) -> LinearColour | None:
+    """Mean colour of the texture beside an object, for meshes that cannot carry it; None without one."""
+    images = _files_with(folder, IMAGE_SUFFIXES)
+    return mean_colour(images[0]) if images else None
 
 
 def _files_with(folder: Path, suffixes: tuple[str, ...]) -> list[Path]:
+    """Files of a folder with these suffixes, sorted; none if there is no folder."""
     if not folder.is_dir():
         return []
-    return sorted(path for path in folder.iterdir() if path.suffix.lower() in suffixes)
+    return sorted(path for path in folder.iterdir() if path.suffix.lower() in suffixes and path.is_file())

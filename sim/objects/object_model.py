@@ -10,6 +10,7 @@ from jaxtyping import Float, Float32, UInt8, UInt32
 from scipy.spatial import ConvexHull
 
 from preshape.geometry.pose import transform_points
+from sim.objects.colour import LinearColour
 
 PAPER_DENSITY = 100.0
 """Density of every object in the authors' simulation (kg/m3)."""
@@ -31,7 +32,7 @@ class VisualPart:
     vertices: Float32[np.ndarray, "v 3"]
     faces: UInt32[np.ndarray, "f 3"]
     normals: Float32[np.ndarray, "v 3"]
-    colour: tuple[float, float, float]
+    colour: LinearColour
     uvs: Float32[np.ndarray, "v 2"] | None = None
     texture: UInt8[np.ndarray, "h w 3"] | None = None
 

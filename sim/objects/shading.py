@@ -4,6 +4,7 @@ import numpy as np
 from jaxtyping import Float, Num, UInt8
 from scipy.sparse import csr_array
 
+from sim.objects.colour import LinearColour
 from sim.objects.object_model import VisualPart
 
 CREASE_RAD = np.deg2rad(35.0)
@@ -11,7 +12,7 @@ CREASE_RAD = np.deg2rad(35.0)
 WELD_M = 1e-6
 
 
-def shaded_part(triangles: Float[np.ndarray, "n 3 3"], colour: tuple[float, float, float]) -> VisualPart:
+def shaded_part(triangles: Float[np.ndarray, "n 3 3"], colour: LinearColour) -> VisualPart:
     """Triangles (m, counter-clockwise from outside) in one linear RGB."""
     return _part(triangles, colour)
 
@@ -59,7 +60,7 @@ def crease_normals(triangles: Float[np.ndarray, "n 3 3"]) -> Float[np.ndarray, "
 
 def _part(
     triangles: Float[np.ndarray, "n 3 3"],
-    colour: tuple[float, float, float],
+    colour: LinearColour,
     uvs: Float[np.ndarray, "v 2"] | None = None,
     texture: UInt8[np.ndarray, "h w 3"] | None = None,
 ) -> VisualPart:

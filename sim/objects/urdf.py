@@ -52,18 +52,18 @@ def read_object_urdf(path: Path) -> UrdfObject:
     try:
         root = etree.fromstring(path.read_bytes(), parser)
     except OSError as error:
-        raise _unusable(f"the URDF cannot be read: {error.strerror}", path) from error
+        raise _unusable(f"The URDF cannot be read: {error.strerror}", path) from error
     except etree.XMLSyntaxError as error:
-        raise _unusable(f"the URDF is not XML: {error.msg}", path) from error
+        raise _unusable(f"The URDF is not XML: {error.msg}", path) from error
     if root is None:
-        raise _unusable("the URDF is not XML", path)
+        raise _unusable("The URDF is not XML", path)
     links = [link for link in root.iter("link") if link.find("visual") is not None or _has_collision(link)]
     if len(links) != 1:
-        raise _unusable(f"the URDF has {len(links)} links with a shape, and an object has one", path)
+        raise _unusable(f"The URDF has {len(links)} links with a shape, and an object has one", path)
     try:
         return _read_link(links[0], path)
     except (TypeError, ValueError) as error:
-        raise _unusable(f"the URDF holds a number that is none ({error})", path) from error
+        raise _unusable(f"The URDF holds a number that is none ({error})", path) from error
 
 
 def _read_link(link: etree._Element, path: Path) -> UrdfObject:
@@ -72,7 +72,7 @@ def _read_link(link: etree._Element, path: Path) -> UrdfObject:
     collisions = tuple(mesh for shape in link.findall("collision") if (mesh := _read_mesh(shape, path)))
     visuals = tuple(mesh for shape in link.findall("visual") if (mesh := _read_mesh(shape, path)))
     if not collisions and not visuals:
-        raise _unusable("the URDF names no mesh", path)
+        raise _unusable("The URDF names no mesh", path)
     return UrdfObject(mass_kg if mass_kg and mass_kg > 0 else None, collisions, visuals)
 
 
