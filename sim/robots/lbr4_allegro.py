@@ -114,11 +114,17 @@ def _check_settings(settings: RobotSettings, grasp_space: GraspSpace, urdf: etre
             where=where,
             fix=f"choose from {list(hand)}",
         )
+    if len(settings.arm_accelerations) != len(arm):
+        raise InputError(
+            f"arm_accelerations has {len(settings.arm_accelerations)} entries",
+            where=where,
+            fix=f"give {len(arm)}, one for each joint of the arm",
+        )
     lower, upper = _limits(arm, "lower"), _limits(arm, "upper")
     home = np.array(settings.arm_home_rad)
     if home.shape != lower.shape or np.any(home < lower) or np.any(home > upper):
         raise InputError(
-            "arm_home_rad must be seven angles within the arm's limits",
+            f"arm_home_rad must be {len(arm)} angles within the arm's limits",
             where=where,
             fix=f"stay between {lower.round(3).tolist()} and {upper.round(3).tolist()}",
         )
