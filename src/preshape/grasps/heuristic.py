@@ -36,8 +36,8 @@ class HeuristicSettings:
         top_offset_m, side_offset_m: distance of the palm's origin from the face's centre along its normal.
         offset_noise_m: standard deviation of the noise on that distance.
         axis_noise_rad: standard deviation of the noise on the turn of a top grasp about the vertical.
-        min_top_palm_height_m, min_side_palm_height_m: lowest height of the palm's origin over the table for top
-            and for side grasps, so that the hand clears the table; a lower palm is raised to it.
+        min_top_palm_height_m, min_side_palm_height_m: lowest height of the palm's origin over the table for
+            top and for side grasps, so that the hand clears the table; a lower palm is raised to it.
         min_side_height_m: lower objects get a top grasp only.
         reach_direction: world direction in which the arm reaches; the fingers of a top grasp point that way.
     """

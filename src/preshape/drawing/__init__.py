@@ -1,0 +1,1 @@
+"""Pictures: grasps in the view, and the channels of the image."""
