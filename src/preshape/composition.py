@@ -24,8 +24,17 @@ def check_composition(cfg: DictConfig) -> None:
     _check_planners_have_a_network(cfg)
 
 
+def missing_keys(content: Any, prefix: str = "") -> Iterator[str]:
+    """The keys (`???`) that a user has to give, of an unresolved configuration; references do not count."""
+    for key, value in content.items():
+        if isinstance(value, dict):
+            yield from missing_keys(value, f"{prefix}{key}.")
+        elif value == "???":
+            yield f"{prefix}{key}"
+
+
 def _check_nothing_is_missing(cfg: DictConfig) -> None:
-    missing = sorted(OmegaConf.missing_keys(cfg))
+    missing = sorted(missing_keys(OmegaConf.to_container(cfg, resolve=False)))
     if missing:
         groups = dict.fromkeys(key.split(".")[0] for key in missing)
         raise InputError(

@@ -62,7 +62,7 @@ def test_climbing_needs_a_network(parts: dict[str, Any], tmp_path: Path) -> None
 
 
 def test_missing_values_are_named_together() -> None:
-    objects = {"name": "mesh_folder", "root": "???"}
+    objects = {"name": "mesh_folder", "root": "???", "set": {"root": "${objects.root}"}}
     with pytest.raises(InputError, match=r"objects\.root") as refusal:
         check(objects=objects, weights="???")
     assert refusal.value.where == "objects=mesh_folder, weights"

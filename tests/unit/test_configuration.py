@@ -8,10 +8,12 @@ import pytest
 import trimesh
 import yaml
 from hydra import compose, initialize_config_dir
+from hydra.errors import ConfigCompositionException
 from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
 
 import preshape.entry_point  # noqa: F401 - registers the resolvers
+from preshape.composition import missing_keys
 
 ROOT = Path(__file__).parents[2]
 CONF = ROOT / "conf"
@@ -41,6 +43,7 @@ def choices() -> Iterator[tuple[str, str, str]]:
 
 
 CHOICES = sorted(set(choices()))
+EXPERIMENT = "experiment"
 
 
 @pytest.fixture(scope="module")
@@ -89,14 +92,27 @@ def test_no_option_is_unreachable() -> None:
     assert {(group.name, path.stem) for group in GROUPS for path in group.glob("*.yaml")} == reachable
 
 
-@pytest.mark.parametrize(("command", "group", "option"), CHOICES)
+@pytest.mark.parametrize("option", sorted({option for _, key, option in CHOICES if key == EXPERIMENT}))
+def test_every_experiment_composes_with_a_command(option: str) -> None:
+    def composes(command: str) -> bool:
+        try:
+            return compose_command(command, f"{EXPERIMENT}={option}") is not None
+        except ConfigCompositionException:  # made for another command
+            return False
+
+    assert any(composes(command) for command, key, known in CHOICES if (key, known) == (EXPERIMENT, option))
+
+
+@pytest.mark.parametrize(
+    ("command", "group", "option"), [choice for choice in CHOICES if choice[1] != EXPERIMENT]
+)
 def test_every_option_composes_and_builds(
     command: str, group: str, option: str, mesh_folder: Path, tmp_path: Path
 ) -> None:
     overrides = [f"{group}={option}", f"paths.cache={tmp_path}"]
     given = {"objects.root": mesh_folder}
-    missing = OmegaConf.missing_keys(compose_command(command, *overrides)) & set(given)
-    cfg = compose_command(command, *overrides, *(f"{key}={given[key]}" for key in missing))
+    missing = missing_keys(OmegaConf.to_container(compose_command(command, *overrides)))
+    cfg = compose_command(command, *overrides, *(f"{key}={given[key]}" for key in missing if key in given))
     name = group.split("@")[-1]
     for part in buildable(OmegaConf.select(cfg, name)):
         assert instantiate(part) is not None
