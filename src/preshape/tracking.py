@@ -118,13 +118,13 @@ class MlflowTracking:
     ) -> tuple["MlflowClient", str]:
         # Takes seconds to import, and would otherwise report its use to its makers.
         os.environ.setdefault("MLFLOW_DISABLE_TELEMETRY", "true")
-        for noisy in ("alembic", "mlflow"):
-            logging.getLogger(noisy).setLevel(logging.WARNING)
         from mlflow import MlflowClient
         from mlflow.entities import Param
         from mlflow.exceptions import MlflowException
         from sqlalchemy.exc import SQLAlchemyError
 
+        for noisy in ("alembic", "mlflow"):
+            logging.getLogger(noisy).setLevel(logging.WARNING)
         try:
             self._database.parent.mkdir(parents=True, exist_ok=True)
             client = MlflowClient(f"sqlite:///{self._database}")

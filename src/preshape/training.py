@@ -144,7 +144,7 @@ def _measure(
     _save_predictions(folder / "predictions.parquet", trials, success_prob)
     save_roc(folder / "roc.png", trials.lifted, success_prob, metrics)
     write_json(folder / "metrics.json", {**provenance(seed), "model": model.name, **metrics.to_dict()})
-    run.log({f"test_{name}": value for name, value in asdict(metrics).items()}, settings.iterations)
+    run.log({f"test_{name}": float(value) for name, value in asdict(metrics).items()}, settings.iterations)
     for file in (weights, sidecar_path(weights), *(folder / name for name in REPORT_FILES)):
         run.keep(file)
     return TrainingResult(metrics, weights)

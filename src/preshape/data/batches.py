@@ -48,8 +48,9 @@ class PositiveBatches(Sampler[list[int]]):
         self._batches, self._seed = batches, seed
         self._epoch = 0
 
-    def set_epoch(self, epoch: int) -> None:
-        """Choose the epoch that the next iteration goes through; Lightning calls this."""
+    def begin_epoch(self, epoch: int) -> None:
+        """Choose the epoch that the next iteration goes through."""
+        # Not called `set_epoch`, or Lightning would call it, and one too high after an interruption.
         self._epoch = epoch
 
     def __len__(self) -> int:

@@ -113,7 +113,7 @@ class TrialTable:
     @property
     def lifted(self) -> Bool[np.ndarray, "n"]:
         """The label Y of each trial: whether it ended LIFTED."""
-        return (self.rows["outcome"] == TrialOutcome.LIFTED.value).to_numpy(dtype=bool)
+        return (self.rows["outcome"] == TrialOutcome.LIFTED.value).to_numpy(dtype=bool, copy=True)
 
     @property
     def scene_ids(self) -> Int[np.ndarray, "n"]:

@@ -52,7 +52,8 @@ class GraspLightningModule(lightning.LightningModule):
         return logits
 
     def on_train_epoch_start(self) -> None:
-        """Make dropout a function of seed and epoch, so that an interrupted training goes on alike."""
+        """Make batches and dropout functions of seed and epoch: an interrupted training goes on alike."""
+        self.trainer.train_dataloader.sampler.begin_epoch(self.current_epoch)
         torch.manual_seed(self.settings.seed + 7919 * (1 + self.current_epoch))
 
     def training_step(self, batch: GraspBatch) -> Float[Tensor, ""]:

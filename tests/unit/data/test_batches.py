@@ -32,9 +32,9 @@ def test_seed_and_epoch_decide_the_batches() -> None:
     sampler = make()
     first, repeated = list(sampler), list(make())
     assert first == repeated
-    sampler.set_epoch(1)
+    sampler.begin_epoch(1)
     assert list(sampler) != first
-    sampler.set_epoch(0)
+    sampler.begin_epoch(0)
     assert list(sampler) == first
     assert list(make(seed=1)) != first
 

@@ -1,0 +1,72 @@
+"""`python src/train.py` as a user runs it, on a tiny synthetic data set."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from mlflow import MlflowClient
+from synthetic_scenes import write_data_set
+
+from preshape.paths import project_root
+
+FIXTURES = project_root() / "tests" / "fixtures"
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("place")
+    write_data_set(place / "data" / "allegro_grocery", 15)
+    return place
+
+
+def run_train(place: Path, *overrides: str) -> "subprocess.CompletedProcess[str]":
+    command = [
+        *(sys.executable, str(project_root() / "src" / "train.py")),
+        *(f"paths.{name}={place / name}" for name in ("data", "cache", "outputs")),
+        f"tracking.database={place / 'mlflow.db'}",
+        f"tracking.artifacts={place / 'mlartifacts'}",
+        "dataset.data.renderer={_target_:synthetic_scenes.BoxRenderer}",
+        "dataset.data.hold_out.validation_fraction=0.25",
+        "trainer.settings.learning.iterations=6",
+        "trainer.batches_per_epoch=3",
+        *overrides,
+    ]
+    environment = {**os.environ, "PYTHONPATH": str(FIXTURES)}
+    return subprocess.run(
+        command, cwd=place, env=environment, capture_output=True, text=True, timeout=280, check=False
+    )
+
+
+def test_a_training_from_tables_to_tracked_weights(place: Path) -> None:
+    done = run_train(place)
+    assert done.returncode == 0, done.stderr
+    folder = place / "outputs" / "train" / "config_cnn"
+    metrics = json.loads((folder / "metrics.json").read_text())
+    assert metrics["command"].startswith("python src/train.py")
+    last_line = done.stdout.splitlines()[-1]
+    assert f"on {metrics['n']} held-out trials" in last_line
+    assert str(folder / "model.safetensors") in last_line
+    sidecar = json.loads((folder / "model.safetensors.json").read_text())
+    assert sidecar["metrics"]["auc"] == metrics["auc"]
+
+    client = MlflowClient(f"sqlite:///{place / 'mlflow.db'}")
+    experiment = client.get_experiment_by_name("preshape")
+    assert experiment is not None
+    (run,) = client.search_runs([experiment.experiment_id])
+    assert run.info.status == "FINISHED"
+    assert run.data.params["model.name"] == "config_cnn"
+    assert [point.step for point in client.get_metric_history(run.info.run_id, "train_loss")] == [3, 6]
+    kept = {file.path for file in client.list_artifacts(run.info.run_id)}
+    assert {"roc.png", "model.safetensors", "model.safetensors.json", "metrics.json"} <= kept
+
+
+def test_a_missing_table_is_refused(place: Path) -> None:
+    done = run_train(place, "run_name=refused", "paths.data=nowhere")
+    assert done.returncode == 2, done.stderr
+    assert "no table of scenes" in done.stderr
+    assert "Traceback" not in done.stderr
+    left = {path.name for path in (place / "outputs" / "train" / "refused").iterdir()}
+    assert left <= {".hydra", "train.log"}

@@ -1,0 +1,146 @@
+"""Training: the seed decides the weights, an interruption changes nothing, every file comes out."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import torch
+from jaxtyping import Float
+from synthetic_scenes import ORIGIN, BoxRenderer, allegro_space, write_data_set
+from torch import Tensor, nn
+
+from preshape.checkpoints import load_weights
+from preshape.data.data_module import BatchSettings, GraspDataModule
+from preshape.data.folds import HoldOut
+from preshape.models.lightning_module import LearningSettings
+from preshape.models.success_model import SuccessModel
+from preshape.tracking import TrackedRun, UntrackedRun
+from preshape.training import TrainerSettings, predict, train
+
+SETTINGS = TrainerSettings(
+    LearningSettings(iterations=24, learning_rate=1e-2, learning_rate_factor=0.1, seed=0),
+    accelerator="cpu",
+    precision="32-true",
+)
+
+
+class TinyNetwork(SuccessModel):
+    """Mean colours and theta, one hidden layer and dropout: trains in milliseconds."""
+
+    def __init__(self) -> None:
+        super().__init__("tiny", "allegro_palm14", 14)
+        self.layers = nn.Sequential(nn.Linear(8 + 14, 16), nn.Tanh(), nn.Dropout(0.25), nn.Linear(16, 1))
+
+    def features(self, patch: Float[Tensor, "b 8 h w"]) -> Float[Tensor, "b 8"]:
+        return self.normalize_patch(patch[:, :, ::40, ::40]).mean(dim=(2, 3))
+
+    def head(self, features: Float[Tensor, "f 8"], theta: Float[Tensor, "b 14"]) -> Float[Tensor, "b"]:
+        joint = torch.cat((features.expand(len(theta), -1), self.normalize_theta(theta)), dim=1)
+        return self.layers(joint).squeeze(1)
+
+
+@pytest.fixture(scope="module")
+def data_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("data")
+    write_data_set(folder, 15)
+    return folder
+
+
+@pytest.fixture
+def data(data_folder: Path) -> GraspDataModule:
+    return GraspDataModule(
+        folder=data_folder,
+        origin=ORIGIN,
+        space=allegro_space(),
+        renderer=BoxRenderer(),
+        cache=data_folder / "cache",
+        hold_out=HoldOut("scenes", fold=0, validation_fraction=0.25, seed=0),
+        batches=BatchSettings(batch_size=4, min_positives=1, batches_per_epoch=6, seed=0),
+    )
+
+
+def make_network(seed: int = 0) -> TinyNetwork:
+    torch.manual_seed(seed)
+    return TinyNetwork()
+
+
+class CurvesInMemory(UntrackedRun):
+    """Keeps the curves, and may interrupt the training."""
+
+    def __init__(self, interrupt_at: int | None = None) -> None:
+        self.steps: list[int] = []
+        self.values: dict[str, float] = {}
+        self.files: list[str] = []
+        self._interrupt_at = interrupt_at
+
+    def log(self, values: Mapping[str, float], step: int) -> None:
+        if step == self._interrupt_at:
+            raise RuntimeError("the lights went out")
+        self.steps.append(step)
+        self.values.update(values)
+
+    def keep(self, file: Path) -> None:
+        self.files.append(file.name)
+
+
+def trained(data: GraspDataModule, folder: Path, seed: int = 0, run: TrackedRun | None = None) -> bytes:
+    settings = replace(SETTINGS, learning=replace(SETTINGS.learning, seed=seed))
+    result = train(make_network(seed), data, settings, folder, run or UntrackedRun())
+    return result.weights.read_bytes()
+
+
+def test_a_seed_decides_the_weights(data: GraspDataModule, tmp_path: Path) -> None:
+    first, again, other = (trained(data, tmp_path / f"{i}", seed) for i, seed in enumerate((0, 0, 1)))
+    assert first == again
+    assert first != other
+
+
+def test_an_interrupted_training_ends_with_the_same_weights(data: GraspDataModule, tmp_path: Path) -> None:
+    undisturbed = trained(data, tmp_path / "undisturbed")
+    disturbed = tmp_path / "disturbed"
+    with pytest.raises(RuntimeError, match="lights"):
+        trained(data, disturbed, run=CurvesInMemory(interrupt_at=18))
+    assert [path.suffix for path in disturbed.iterdir()] == [".ckpt"]
+    curves = CurvesInMemory()
+    assert trained(data, disturbed, run=curves) == undisturbed
+    assert curves.steps == [18, 24, 24]
+    assert not list(disturbed.glob("*.ckpt"))
+
+
+def test_every_file_comes_out_and_agrees(data: GraspDataModule, tmp_path: Path) -> None:
+    curves = CurvesInMemory()
+    result = train(make_network(), data, SETTINGS, tmp_path, curves)
+    names = {path.name for path in tmp_path.iterdir()}
+    assert names == {
+        "metrics.json",
+        "model.safetensors",
+        "model.safetensors.json",
+        "predictions.parquet",
+        "roc.png",
+    }
+    assert set(curves.files) == names
+    metrics = json.loads((tmp_path / "metrics.json").read_text())
+    predictions = pd.read_parquet(tmp_path / "predictions.parquet")
+    assert metrics["n"] == len(predictions) == len(data.test) == result.metrics.n
+    assert metrics["auc"]["value"] == pytest.approx(curves.values["test_auc"])
+    assert {"train_loss", "val_loss", "val_auc", "learning_rate"} <= set(curves.values)
+    network = make_network(seed=5)
+    sidecar = load_weights(result.weights, network)
+    assert sidecar.data_hash == data.data_hash
+    reloaded = predict(network, data.test_dataloader())
+    assert np.array_equal(reloaded, predictions["success_prob"])
+
+
+def test_the_learning_rate_drops_after_each_third(data: GraspDataModule, tmp_path: Path) -> None:
+    class LearningRates(UntrackedRun):
+        rates: dict[int, float] = {}  # noqa: RUF012
+
+        def log(self, values: Mapping[str, float], step: int) -> None:
+            self.rates.setdefault(step, values.get("learning_rate", np.nan))
+
+    train(make_network(), data, SETTINGS, tmp_path, LearningRates())
+    assert LearningRates.rates == pytest.approx({6: 1e-2, 12: 1e-3, 18: 1e-4, 24: 1e-4})

@@ -1,0 +1,53 @@
+"""Tracked runs, in a real MLflow store."""
+
+from pathlib import Path
+
+import pytest
+from mlflow import MlflowClient
+
+from preshape.errors import InputError
+from preshape.tracking import MlflowTracking, NoTracking, flatten
+
+
+def store(folder: Path) -> MlflowTracking:
+    return MlflowTracking(folder / "mlflow.db", folder / "mlartifacts", "preshape")
+
+
+def test_a_run_keeps_configuration_curves_and_files(tmp_path: Path) -> None:
+    picture = tmp_path / "roc.png"
+    picture.write_bytes(b"picture")
+    config = {"model": {"name": "config_cnn"}, "many": {f"key_{i}": i for i in range(150)}}
+    with store(tmp_path).run("config_cnn", config, {"git_revision": "abc"}) as run:
+        run.log({"loss": 0.7, "auc": float("nan")}, step=10)
+        run.log({"loss": 0.5, "auc": 0.8}, step=20)
+        run.keep(picture)
+    with pytest.raises(ValueError, match="broken"), store(tmp_path).run("second", {}, {}):
+        raise ValueError("broken")
+
+    client = MlflowClient(f"sqlite:///{tmp_path / 'mlflow.db'}")
+    experiment = client.get_experiment_by_name("preshape")
+    assert experiment is not None
+    failed, finished = client.search_runs([experiment.experiment_id], order_by=["start_time DESC"])
+    assert (failed.info.status, finished.info.status) == ("FAILED", "FINISHED")
+    assert finished.data.params == flatten(config)
+    assert finished.data.tags["git_revision"] == "abc"
+    losses = client.get_metric_history(finished.info.run_id, "loss")
+    assert [(point.step, point.value) for point in losses] == [(10, 0.7), (20, 0.5)]
+    assert [point.step for point in client.get_metric_history(finished.info.run_id, "auc")] == [20]
+    assert [file.path for file in client.list_artifacts(finished.info.run_id)] == ["roc.png"]
+
+
+def test_a_store_that_is_none_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "mlflow.db").write_text("not a database, but long enough to look like a file " * 40)
+    with pytest.raises(InputError, match="MLflow store"), store(tmp_path).run("name", {}, {}):
+        pass
+
+
+def test_tracking_can_be_left_out(tmp_path: Path) -> None:
+    with NoTracking().run("name", {}, {}) as run:
+        run.log({"loss": 0.5}, step=1)
+        run.keep(tmp_path / "nothing")
+
+
+def test_configurations_become_flat() -> None:
+    assert flatten({"a": {"b": {"c": 1}, "d": [1, 2]}, "e": {}}) == {"a.b.c": "1", "a.d": "[1, 2]", "e": "{}"}
