@@ -11,7 +11,6 @@ from preshape.data.tables import SCENES_FILE, TRIALS_FILE, write_scenes, write_t
 from preshape.entry_point import entry_point
 from sim.collection import CollectionSettings, collect
 from sim.fingerprint import fingerprint
-from sim.workers import available_cores
 
 log = logging.getLogger(__name__)
 
@@ -19,9 +18,7 @@ log = logging.getLogger(__name__)
 @entry_point("collect")
 def main(cfg: DictConfig) -> None:
     """Collect until enough trials were executed, then write both tables."""
-    settings = CollectionSettings(
-        cfg.collect.trials, cfg.collect.seed, cfg.collect.workers or available_cores()
-    )
+    settings = CollectionSettings(cfg.collect.trials, cfg.collect.seed, cfg.collect.workers)
     parts = Path(cfg.paths.cache) / "collect" / fingerprint(cfg.laboratory, cfg.collect.seed)
     origin, space = instantiate(cfg.laboratory.origin), instantiate(cfg.robot.grasp_space)
     scenes, trials = collect(partial(instantiate, cfg.laboratory), origin, space, settings, parts)

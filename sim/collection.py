@@ -31,13 +31,13 @@ class CollectionSettings:
     Args:
         trials: executed trials wanted; unreachable ones come on top and are recorded, too.
         seed: seed of the run; with the number of a trial it decides everything random in it.
-        workers: number of processes.
+        workers: number of processes; None takes every core.
         max_scenes_per_trial: gives up after this many scenes per executed trial wanted.
     """
 
     trials: int
     seed: int
-    workers: int
+    workers: int | None = None
     max_scenes_per_trial: float = 3.0
 
 

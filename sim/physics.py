@@ -16,7 +16,7 @@ class PhysicsSettings:
         timestep_s: length of one physics step.
         solver_iterations: position iterations; multi-finger grasps need 20 or more.
         contact_offset_m: distance at which contacts are made.
-        friction: static and dynamic friction of everything.
+        friction: static and dynamic friction of the hand; table and objects have their own.
     """
 
     timestep_s: float = 1 / 240

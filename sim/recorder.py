@@ -18,15 +18,17 @@ class RecorderSettings:
     """How a trial is filmed.
 
     Args:
-        frames_per_s: pictures per simulated second.
+        every: a picture is kept of every so many control periods.
+        frames_per_s: speed at which they are shown.
         width, height, focal: the bystander's camera, in pixels.
         eye, target: where it stands and looks (m, world).
     """
 
+    every: int = 15
     frames_per_s: float = 8.0
     width: int = 320
     height: int = 240
-    focal: float = 300.0
+    focal: float = 420.0
     eye: tuple[float, float, float] = (1.35, -0.75, 1.15)
     target: tuple[float, float, float] = (0.78, 0.0, 0.72)
 
@@ -36,12 +38,10 @@ class Recorder:
 
     Args:
         settings: how to film.
-        period_s: simulated time between two calls.
     """
 
-    def __init__(self, settings: RecorderSettings, period_s: float) -> None:
+    def __init__(self, settings: RecorderSettings) -> None:
         self._settings = settings
-        self._every = max(1, round(1 / (settings.frames_per_s * period_s)))
         self._calls = 0
         self._lens = None
         self.frames: list[UInt8[np.ndarray, "h w 3"]] = []
@@ -50,7 +50,7 @@ class Recorder:
     def __call__(self, world: World, phase: str) -> None:
         """Look at the world; every so often keep a picture."""
         self._calls += 1
-        if (self._calls - 1) % self._every:
+        if (self._calls - 1) % self._settings.every:
             return
         if self._lens is None:
             s = self._settings

@@ -15,7 +15,7 @@ ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THRE
 
 
 def run_in_order(
-    build: Callable[[], Callable[[Job], Result]], jobs: Iterator[Job], workers: int
+    build: Callable[[], Callable[[Job], Result]], jobs: Iterator[Job], workers: int | None
 ) -> Iterator[Result]:
     """Results of the jobs, in their order, worked on by several processes.
 
@@ -25,9 +25,9 @@ def run_in_order(
     Args:
         build: makes the function that does a job; called once in each process. It and the jobs are pickled.
         jobs: what to do.
-        workers: number of processes; 1 stays in this one.
+        workers: number of processes; 1 stays in this one, None takes every core.
     """
-    if workers <= 1:
+    if (workers or available_cores()) <= 1:
         yield from map(build(), jobs)
         return
     os.environ.update(ONE_THREAD)

@@ -1,5 +1,6 @@
 """Writing files so that they are there whole or not at all, and reading JSON that a user may have edited."""
 
+import hashlib
 import json
 import math
 import os
@@ -84,6 +85,15 @@ def read_json(path: str | Path) -> dict[str, Any]:
             fix="give the file that the command expects",
         )
     return content
+
+
+def file_hash(path: str | Path) -> str:
+    """SHA-256 of a file's content; raises InputError if it cannot be read."""
+    try:
+        return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    except OSError as error:
+        problem = error.strerror or error
+        raise InputError(f"The file cannot be read: {problem}", where=path, fix="check the path") from error
 
 
 def _plain(value: Any) -> Any:
