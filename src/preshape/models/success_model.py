@@ -86,11 +86,10 @@ def channel_statistics(patches: Iterable[Tensor]) -> tuple[Float[Tensor, "c"], F
     """Mean and standard deviation per channel over the finite values of patches (c, h, w)."""
     count, total, squares = torch.zeros(3, IMAGE_CHANNELS, dtype=torch.float64).unbind()
     for patch in patches:
-        values = patch.flatten(1).double()
-        finite = values.isfinite()
-        values = values.where(finite, 0.0)
-        count += finite.sum(dim=1)
-        total += values.sum(dim=1)
-        squares += values.square().sum(dim=1)
+        values = patch.flatten(1).float()
+        count += values.isfinite().sum(dim=1)
+        known = values.nan_to_num(nan=0.0, posinf=0.0, neginf=0.0)
+        total += known.sum(dim=1)
+        squares += torch.linalg.vector_norm(known, dim=1).double().square()
     mean = total / count.clamp_min(1)
     return mean, (squares / count.clamp_min(1) - mean.square()).clamp_min(0).sqrt()
