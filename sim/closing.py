@@ -29,12 +29,12 @@ class ClosingSettings:
         max_time_s: when to give up waiting for fingers that never stop.
     """
 
-    finger_speed_rad_s: float = 0.4
-    thumb_speed_rad_s: float = 0.5
+    finger_speed_rad_s: float = 0.6
+    thumb_speed_rad_s: float = 0.75
     lead_rad: float = 0.15
     stopped_speed_rad_s: float = 0.04
     stopped_time_s: float = 0.2
-    max_time_s: float = 5.0
+    max_time_s: float = 3.5
 
 
 @dataclass
