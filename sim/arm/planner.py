@@ -46,6 +46,26 @@ class ArmPlannerSettings:
     path: PathSettings = field(default_factory=PathSettings)
 
 
+class _Clock:
+    """Sums up wall-clock seconds by part."""
+
+    def __init__(self) -> None:
+        self._seconds: dict[str, float] = {}
+
+    @contextmanager
+    def part(self, name: str) -> Iterator[None]:
+        """Book the time that the body takes."""
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            self._seconds[name] = self._seconds.get(name, 0.0) + time.perf_counter() - start
+
+    def times(self) -> PlanningTimes:
+        """What was booked."""
+        return PlanningTimes(**self._seconds)
+
+
 DEFAULTS = ArmPlannerSettings()
 
 
@@ -126,7 +146,7 @@ class ArmPlanner:
         candidates: list[Candidate],
         checker: CollisionChecker,
         rng: np.random.Generator,
-        clock: "_Clock",
+        clock: _Clock,
     ) -> tuple[JointTrajectory, Candidate]:
         """Free motion from rest to the start of one candidate's approach; near candidates come first."""
         kinematics, settings = self.kinematics, self._settings
@@ -156,23 +176,3 @@ class ArmPlanner:
         if motion is None:
             raise NoMotionError(TrialOutcome.BLOCKED, "the joints are too slow for a straight line")
         return motion
-
-
-class _Clock:
-    """Sums up wall-clock seconds by part."""
-
-    def __init__(self) -> None:
-        self._seconds: dict[str, float] = {}
-
-    @contextmanager
-    def part(self, name: str) -> Iterator[None]:
-        """Book the time that the body takes."""
-        start = time.perf_counter()
-        try:
-            yield
-        finally:
-            self._seconds[name] = self._seconds.get(name, 0.0) + time.perf_counter() - start
-
-    def times(self) -> PlanningTimes:
-        """What was booked."""
-        return PlanningTimes(**self._seconds)

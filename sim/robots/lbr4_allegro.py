@@ -22,12 +22,11 @@ MOUNT_RADIUS_M = 0.04
 MOUNT_DENSITY = 2700.0
 ROOT_LINK = "lbr4_base_link"
 
-# Shapes that overlap by design: forearm and wrist reach around the flange, the thumb's root into the palm.
+# Shapes that overlap by design: forearm and wrist reach around the flange.
 OVERLAPPING_PAIRS = (
     ("lbr4_5_link", FLANGE_LINK),
     ("lbr4_5_link", MOUNT_LINK),
     ("lbr4_6_link", MOUNT_LINK),
-    (allegro.PALM_LINK, "link_13.0"),
 )
 
 
