@@ -91,9 +91,9 @@ def train(
 def predict(model: SuccessModel, loader: DataLoader[GraspBatch]) -> Float64[np.ndarray, "n"]:
     """Success probabilities of all trials of a loader, in its order."""
     model.eval()
-    weights = next(model.parameters())
+    device = next(model.parameters()).device
     with torch.inference_mode():
-        logits = [model(batch.patch.to(weights), batch.theta.to(weights)) for batch in loader]
+        logits = [model(batch.patch.to(device), batch.theta.to(device)) for batch in loader]
     return torch.sigmoid(torch.cat(logits).double()).cpu().numpy()
 
 

@@ -48,7 +48,7 @@ class GraspLightningModule(lightning.LightningModule):
 
     def forward(self, batch: GraspBatch) -> Float[Tensor, "b"]:
         """Logits of a batch."""
-        logits: Tensor = self.model(batch.patch.to(batch.theta), batch.theta)
+        logits: Tensor = self.model(batch.patch, batch.theta)
         return logits
 
     def on_train_epoch_start(self) -> None:

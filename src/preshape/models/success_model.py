@@ -74,8 +74,11 @@ class SuccessModel(nn.Module, ABC):
         self.theta_std.copy_(finite.std(dim=0, correction=0).clamp_min(MIN_THETA_STD))
 
     def normalize_patch(self, patch: Float[Tensor, "b 8 h w"]) -> Float[Tensor, "b 8 h w"]:
-        """Patches with zero mean and unit deviation per channel over the training data."""
-        return (patch - self.image_mean.view(1, -1, 1, 1)) / self.image_std.view(1, -1, 1, 1)
+        """Patches with zero mean and unit deviation per channel over the training data.
+
+        Patches in half precision, as they are cached, become single precision on the way.
+        """
+        return torch.sub(patch, self.image_mean.view(-1, 1, 1)).div_(self.image_std.view(-1, 1, 1))
 
     def normalize_theta(self, theta: Float[Tensor, "b d"]) -> Float[Tensor, "b d"]:
         """Configurations with zero mean and unit deviation per parameter over the training data."""
