@@ -5,37 +5,42 @@ from jaxtyping import UInt8
 from matplotlib.figure import Figure
 
 from preshape.drawing.grasp_overlay import grasp_overlay
+from preshape.drawing.grasp_window import cut, grasp_window
 from preshape.hands.kinematics import HandKinematics
 from preshape.perception.observation import Observation
 from preshape.planning.grasp_plan import GraspPlan
+
+SCALE = 3
+"""How many times the picture is larger than the view."""
 
 
 def plan_picture(observation: Observation, plan: GraspPlan, hand: HandKinematics) -> Figure:
     """Figure with one panel per grasp, the best first: before and after planning, and what is predicted."""
     starts = plan.result.ranking.tolist()
-    width, height = 6.4, 6.4 * observation.camera.height / observation.camera.width
-    figure = Figure(figsize=(width * len(starts), height + 0.4), layout="constrained")
+    figure = Figure(figsize=(6.4 * len(starts), 5.2), layout="constrained")
     panels = figure.subplots(1, len(starts), squeeze=False).flat
     for rank, (axes, start) in enumerate(zip(panels, starts, strict=True), 1):
         face = plan.faces[start].value.replace("_", " ")
         axes.imshow(_drawn(observation, plan, hand, start))
         axes.set_axis_off()
         axes.set_title(f"{rank}. {face}: {_predicted(plan, start)}", fontsize=15)
+    figure.supxlabel("dashed orange: initial grasp; blue: planned grasp", fontsize=13)
     return figure
 
 
 def _drawn(
     observation: Observation, plan: GraspPlan, hand: HandKinematics, start: int
 ) -> UInt8[np.ndarray, "h w 3"]:
-    result = plan.result
-    moved = not np.array_equal(result.theta[start], result.initial_theta[start])
-    return grasp_overlay(
+    initial, planned = plan.result.initial_theta, plan.result.theta
+    overlay = grasp_overlay(
         observation.rgb,
         observation.camera,
         hand,
-        initial=result.initial_theta[start],
-        planned=result.theta[start] if moved else None,
+        initial=initial[start],
+        planned=None if np.array_equal(initial[start], planned[start]) else planned[start],
+        scale=SCALE,
     )
+    return cut(overlay, grasp_window(observation.camera, initial), SCALE)
 
 
 def _predicted(plan: GraspPlan, start: int) -> str:

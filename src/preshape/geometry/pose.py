@@ -31,7 +31,8 @@ def transform_points(
     pose: Float[np.ndarray, "4 4"], points: Float[np.ndarray, "*n 3"]
 ) -> Float[np.ndarray, "*n 3"]:
     """Points given in b, expressed in a, for pose T_a_b."""
-    return points @ pose[:3, :3].T + pose[:3, 3]
+    moved: Float[np.ndarray, "*n 3"] = points @ pose[:3, :3].T + pose[:3, 3]
+    return moved
 
 
 def pose_from_quaternion(
@@ -43,12 +44,16 @@ def pose_from_quaternion(
 
 def quaternion_from_pose(pose: Float[np.ndarray, "4 4"]) -> Float[np.ndarray, "4"]:
     """Unit wxyz quaternion of a pose, with w >= 0."""
-    return Rotation.from_matrix(pose[:3, :3]).as_quat(canonical=True, scalar_first=True)
+    wxyz: Float[np.ndarray, "4"] = Rotation.from_matrix(pose[:3, :3]).as_quat(
+        canonical=True, scalar_first=True
+    )
+    return wxyz
 
 
 def euler_xyz_from_rotation(rotation: Float[np.ndarray, "3 3"]) -> Float[np.ndarray, "3"]:
     """Extrinsic XYZ Euler angles (rad); pitch lies within +-pi/2, where it is singular."""
-    return Rotation.from_matrix(rotation).as_euler("xyz")
+    angles: Float[np.ndarray, "3"] = Rotation.from_matrix(rotation).as_euler("xyz")
+    return angles
 
 
 def rotation_from_euler_xyz(angles: Float[Tensor, "*b 3"]) -> Float[Tensor, "*b 3 3"]:

@@ -13,6 +13,7 @@ from preshape.planning.landscape import Climbed, Landscape, Point
 from preshape.planning.line_search import LineSearch
 from preshape.planning.objective import Objective
 from preshape.planning.result import PlanResult, PlanStatus, rank_by
+from preshape.planning.threads import one_thread
 
 StepUnit = Literal["raw", "half_width"]
 """What a step of 1 means. `raw`: theta moves by its gradient, metres and radians alike, as in the paper;
@@ -44,13 +45,14 @@ class GradientAscent:
         """See `Planner`."""
         begin = perf_counter()
         landscape = Landscape(objective, self.climbed)
-        first = landscape.at(bounds.project(initial))
-        climb = Climb(first, self.line_search.first_step)
-        self._stop_where_flat(climb, climb.climbing, bounds)
-        for _ in range(self.max_iterations):
-            if len(climb.climbing) == 0:
-                break
-            self._iterate(climb, landscape, bounds)
+        with one_thread():
+            first = landscape.at(bounds.project(initial))
+            climb = Climb(first, self.line_search.first_step)
+            self._stop_where_flat(climb, climb.climbing, bounds)
+            for _ in range(self.max_iterations):
+                if len(climb.climbing) == 0:
+                    break
+                self._iterate(climb, landscape, bounds)
         here = climb.here
         return PlanResult(
             theta=here.theta,

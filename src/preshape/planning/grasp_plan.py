@@ -36,3 +36,12 @@ class GraspPlan:
         """T_world_palm of a planned grasp."""
         pose: Float[np.ndarray, "4 4"] = self.T_world_camera @ self.palm_pose(start)
         return pose
+
+    def summary(self) -> str:
+        """The grasp to try first, in one line."""
+        best = self.result.best
+        face = self.faces[best].value.replace("_", " ")
+        before, after = self.result.initial_success_prob[best], self.result.success_prob[best]
+        if np.isnan(after):
+            return f"First of {len(self.faces)} grasps: {face}, its success is unknown without a network"
+        return f"Best of {len(self.faces)} grasps: {face}, p(success) {after:.3f} (initially {before:.3f})"

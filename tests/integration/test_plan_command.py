@@ -1,0 +1,101 @@
+"""`python src/plan.py`: views and networks in, grasps out, bad input refused."""
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import torch
+from PIL import Image
+from synthetic_scenes import BoxRenderer, make_scene
+
+from preshape.checkpoints import save_weights
+from preshape.models.config_cnn import ConfigCNN
+from preshape.perception.view_files import save_view
+
+PLAN = Path(__file__).parents[2] / "src" / "plan.py"
+# As on a machine on which no simulator is installed: importing one fails.
+WITHOUT_SIMULATOR = (
+    "import runpy, sys; sys.modules |= {'sapien': None, 'sim': None, 'ompl': None};"
+    f"sys.argv[0] = {str(PLAN)!r}; runpy.run_path(sys.argv[0], run_name='__main__')"
+)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a view and with weights."""
+    folder = tmp_path_factory.mktemp("plan")
+    save_view(folder / "view", BoxRenderer()(make_scene(0)))
+    torch.manual_seed(0)
+    model = ConfigCNN("config_cnn", "allegro_palm14", 14)
+    save_weights(folder / "model.safetensors", model, data_hash="none", git_revision="none", metrics={})
+    return folder
+
+
+FILES = ("rgb_file=view/rgb.png", "depth_file=view/depth.png", "camera_file=view/camera.json")
+Command = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture
+def plan(folder: Path, tmp_path: Path) -> Command:
+    """Run the command in the folder; its output goes to `out` of the test's own folder."""
+
+    def run(*overrides: str) -> subprocess.CompletedProcess[str]:
+        settings = (f"paths.outputs={tmp_path / 'runs'}", f"output={tmp_path / 'out'}")
+        command = [sys.executable, "-c", WITHOUT_SIMULATOR, *settings, *overrides]
+        return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=240, check=False)
+
+    return run
+
+
+def test_plans_are_written_ranked_and_drawn(plan: Command, tmp_path: Path) -> None:
+    done = plan("view=view", "weights=model.safetensors", "planner.method.max_iterations=3")
+    assert done.returncode == 0, done.stderr
+    content = json.loads((tmp_path / "out" / "grasps.json").read_text())
+    probs = [grasp["success_prob"] for grasp in content["grasps"]]
+    assert len(probs) == 3
+    assert probs == sorted(probs, reverse=True)
+    assert all(grasp["success_prob"] >= grasp["initial_success_prob"] for grasp in content["grasps"])
+    with Image.open(tmp_path / "out" / "grasps.png") as picture:
+        assert picture.width > 3 * picture.height / 2
+    last_line = done.stdout.strip().splitlines()[-1]
+    assert f"{max(probs):.3f}" in last_line
+    assert last_line.endswith(str(tmp_path / "out" / "grasps.json"))
+
+
+def test_heuristic_needs_no_weights_and_single_files_will_do(plan: Command, tmp_path: Path) -> None:
+    done = plan("planner=heuristic", *FILES)
+    assert done.returncode == 0, done.stderr
+    content = json.loads((tmp_path / "out" / "grasps.json").read_text())
+    assert [grasp["success_prob"] for grasp in content["grasps"]] == [None] * 3
+
+
+def test_a_truncated_view_is_refused(plan: Command, folder: Path, tmp_path: Path) -> None:
+    damaged = tmp_path / "damaged.png"
+    whole = (folder / "view" / "rgb.png").read_bytes()
+    damaged.write_bytes(whole[: len(whole) // 2])
+    refused(plan("view=view", f"rgb_file={damaged}", "planner=heuristic"), "cannot be read", tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "message"),
+    [
+        (["view=view"], "planner=heuristic"),
+        (["planner=heuristic"], "No view was given"),
+        (["view=view", "weights=view/rgb.png"], "sidecar"),
+    ],
+    ids=["no weights", "no view", "foreign weights"],
+)
+def test_bad_choices_are_refused(overrides: list[str], message: str, plan: Command, tmp_path: Path) -> None:
+    refused(plan(*overrides), message, tmp_path)
+
+
+def refused(done: subprocess.CompletedProcess[str], message: str, tmp_path: Path) -> None:
+    """One clear message, status 2, no traceback, nothing written."""
+    assert done.returncode == 2, done.stderr
+    assert message in done.stderr
+    assert done.stderr.startswith("ERROR: ")
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "out").exists()
