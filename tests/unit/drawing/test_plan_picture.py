@@ -24,7 +24,8 @@ def theta(u: float, v: float, distance_m: float) -> np.ndarray:
 @pytest.mark.parametrize("pixel", [(160, 120), (0, 0), (319, 239), (-500, 90)])
 def test_window_stays_in_the_view_and_holds_the_palm_if_it_is_there(pixel: tuple[int, int]) -> None:
     rows, columns = grasp_window(SCENE.camera, np.stack([theta(*pixel, 1.0)] * 2))
-    assert (0 <= rows.start < rows.stop <= 240) and (0 <= columns.start < columns.stop <= 320)
+    assert 0 <= rows.start < rows.stop <= 240
+    assert 0 <= columns.start < columns.stop <= 320
     if pixel[0] >= 0:
         assert columns.start <= pixel[0] <= columns.stop
         assert rows.start <= pixel[1] <= rows.stop
