@@ -1,0 +1,84 @@
+"""A stage of dvc.yaml depends on the code and configuration that decide what it makes, and on nothing else."""
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).parents[2]
+STAGES = yaml.safe_load((ROOT / "dvc.yaml").read_text(encoding="utf-8"))["stages"]
+PLACES = {"preshape": ROOT / "src" / "preshape", "sim": ROOT / "sim", "analysis": ROOT / "analysis"}
+DECIDES_NOTHING = {  # how a run is started, told and kept, not what comes out
+    *("composition", "entry_point", "errors", "files", "paths", "progress", "provenance", "tracking"),
+}
+
+
+def script_of(stage: str) -> Path:
+    return ROOT / next(word for word in STAGES[stage]["cmd"].split() if word.endswith(".py"))
+
+
+def imported_files(path: Path) -> Iterator[Path]:
+    """The project's files that a file imports itself."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            modules = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+        elif isinstance(node, ast.Import):
+            modules = [alias.name for alias in node.names]
+        else:
+            continue
+        for module in modules:
+            package, *rest = module.split(".")
+            if package in PLACES and (file := PLACES[package].joinpath(*rest).with_suffix(".py")).is_file():
+                yield file
+
+
+def configured_files(stage: str) -> Iterator[Path]:
+    """The project's files that the stage's configuration names by `_target_`."""
+    for name in STAGES[stage]["deps"]:
+        if name.startswith("conf/"):
+            text = (ROOT / name).read_text(encoding="utf-8")
+            for package, *rest in (target.split(".") for target in re.findall(r"_target_: ([\w.]+)", text)):
+                modules = (PLACES[package].joinpath(*rest[:end]) for end in range(1, len(rest)))
+                yield from (file for module in modules if (file := module.with_suffix(".py")).is_file())
+
+
+def needed_files(stage: str) -> set[Path]:
+    needed, new = set(), {script_of(stage), *configured_files(stage)}
+    while new:
+        needed |= new
+        new = {file for path in new for file in imported_files(path)} - needed
+    return {path for path in needed if path.parent != PLACES["preshape"] or path.stem not in DECIDES_NOTHING}
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_stage_depends_on_the_code_that_it_runs(stage: str) -> None:
+    dependencies = [ROOT / name for name in STAGES[stage]["deps"]]
+    uncovered = {
+        str(path.relative_to(ROOT))
+        for path in needed_files(stage)
+        if not any(path.is_relative_to(dependency) for dependency in dependencies)
+    }
+    assert uncovered == set()
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_stage_depends_on_no_code_that_it_does_not_run(stage: str) -> None:
+    needed = needed_files(stage)
+    idle = [
+        name
+        for name in STAGES[stage]["deps"]
+        if name.split("/")[0] in {"src", "sim", "analysis"}
+        and not any(path.is_relative_to(ROOT / name) for path in needed)
+    ]
+    assert idle == []
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_dependencies_exist_or_are_made(stage: str) -> None:
+    made = {
+        next(iter(out)) if isinstance(out, dict) else out for each in STAGES.values() for out in each["outs"]
+    }
+    assert [name for name in STAGES[stage]["deps"] if name not in made and not (ROOT / name).exists()] == []
