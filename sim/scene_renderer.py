@@ -2,6 +2,7 @@
 
 import hashlib
 from dataclasses import asdict, dataclass
+from functools import cached_property
 
 import numpy as np
 import sapien
@@ -40,7 +41,7 @@ class SapienSceneRenderer:
     noise: KinectNoise | None = None
     robot: RobotDescription | None = None
 
-    @property
+    @cached_property
     def fingerprint(self) -> str:
         """Hash of all that an image depends on besides its scene."""
         parts = (

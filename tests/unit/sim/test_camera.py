@@ -75,8 +75,8 @@ def test_depth_unprojects_to_a_plane_within_a_tenth_of_a_millimetre() -> None:
     seen = ~np.isnan(points[:, 0])
     on_top = seen & (points[:, 2] > 0.585) & (points[:, 1] > -0.399)  # not the side that faces us
     np.testing.assert_allclose(points[on_top, 2], 0.59, atol=1e-4)
-    np.testing.assert_allclose(points[on_top, 0].min(), 0.5, atol=3e-3)
-    np.testing.assert_allclose(points[on_top, 1].max(), 0.4, atol=3e-3)
+    np.testing.assert_allclose(points[on_top, 0].min(), 0.5, atol=6e-3)
+    np.testing.assert_allclose(points[on_top, 1].max(), 0.4, atol=6e-3)
 
 
 def test_nothing_has_no_depth() -> None:
