@@ -1,4 +1,4 @@
-"""A stage of dvc.yaml depends on the code and configuration that decide what it makes, and on nothing else."""
+"""A stage of dvc.yaml depends on code and configuration that decide what it makes, and on nothing else."""
 
 import ast
 import re
