@@ -22,6 +22,8 @@ IMAGE_SUFFIXES = (".jpeg", ".jpg", ".png")
 LARGEST_M = 1.0
 SMALLEST_M = 0.005
 THINNEST_M = 0.0002
+UNDECLARED = trimesh.visual.material.SimpleMaterial().main_color
+"""What trimesh says of a material that a mesh names and no file declares."""
 TEXTURE_PIXELS = 1024
 """Textures are shrunk to this many pixels along a side; the object covers fewer in the image."""
 
@@ -77,9 +79,9 @@ def visual_part(mesh: trimesh.Trimesh, plain: LinearColour) -> VisualPart:
         image = getattr(visual.material, "image", None) or getattr(visual.material, "baseColorTexture", None)
         if image is not None and visual.uv is not None:
             return textured_part(sides(triangles), sides(visual.uv[mesh.faces]), _pixels(image))
-        # trimesh gives a mesh without any material this one.
-        if visual.material.name != "default" and visual.material.main_color is not None:
-            plain = linear_rgb(np.asarray(visual.material.main_color[:3]))
+        declared = visual.material.main_color
+        if declared is not None and not np.array_equal(declared, UNDECLARED):
+            plain = linear_rgb(np.asarray(declared[:3]))
     elif visual.kind is not None:
         colours = np.asarray(visual.face_colors)[:, :3]
         return painted_part(sides(triangles), np.resize(colours, (len(sides(triangles)), 3)))

@@ -91,6 +91,12 @@ class TestUrdf:
         (part, *_) = load(thing.parent, "Thing").visual_parts
         assert part.colour == pytest.approx((1, 0, 0))
 
+    def test_a_material_that_no_file_declares_is_the_colour_of_the_urdf(self, thing: Path) -> None:
+        corners = "v 0 0 0\nv .1 0 0\nv 0 .1 0\nv 0 0 .1\nvt 0 0\nusemtl missing\n"
+        faces = "f 1/1 3/1 2/1\nf 1/1 2/1 4/1\nf 1/1 4/1 3/1\nf 2/1 3/1 4/1\n"
+        (thing / "collision.obj").write_text("mtllib missing.mtl\n" + corners + faces)
+        assert {part.colour for part in load(thing.parent, "Thing").visual_parts} == {(1.0, 0.0, 0.0)}
+
     def test_another_visual_mesh_stands_in_for_a_missing_one(self, thing: Path) -> None:
         write_obj(thing / "visual_2k.obj", [trimesh.creation.icosphere(radius=0.03)])
         (part,) = load(thing.parent, "Thing").visual_parts
