@@ -46,7 +46,10 @@ def entry_point(config_name: str) -> Callable[[Callable[[DictConfig], None]], Ca
                 _refuse(str(error))
             except (ConfigCompositionException, OverrideParseException) as error:
                 _refuse(_misuse(error))
-            except KeyboardInterrupt:
+            except (KeyboardInterrupt, SystemExit) as end:
+                # Lightning answers an interrupt with an exit of its own
+                if isinstance(end, SystemExit) and not isinstance(end.__context__, KeyboardInterrupt):
+                    raise
                 _end("Interrupted.", EXIT_INTERRUPTED)
 
         return command

@@ -9,6 +9,7 @@ import pytest
 
 COMMAND = """
 import os
+import sys
 from pathlib import Path
 
 import hydra
@@ -21,8 +22,13 @@ preshape.entry_point.project_root = lambda: Path(__file__).parent
 
 @preshape.entry_point.entry_point("command")
 def main(cfg: DictConfig) -> None:
-    if cfg.interrupt:
-        raise KeyboardInterrupt
+    try:
+        if cfg.interrupt:
+            raise KeyboardInterrupt
+    except KeyboardInterrupt:
+        if cfg.interrupt == "swallowed":
+            sys.exit(1)
+        raise
     hydra.utils.instantiate(cfg.part)
     print("works in", os.getcwd(), "with", 1 / cfg.divisor)
 
@@ -41,7 +47,7 @@ class Part:
 CONFIG = """
 defaults: [base, part: small, _self_]
 divisor: 2
-interrupt: false
+interrupt: null
 """
 
 
@@ -117,7 +123,8 @@ def test_defects_keep_their_traceback(run) -> None:
     assert "ZeroDivisionError" in failed.stderr
 
 
-def test_interrupt_ends_with_status_130(run) -> None:
-    interrupted = run("interrupt=true")
+@pytest.mark.parametrize("how", ["plain", "swallowed"])
+def test_interrupt_ends_with_status_130(run, how: str) -> None:
+    interrupted = run(f"interrupt={how}")
     assert interrupted.returncode == 130
     assert "Traceback" not in interrupted.stderr
