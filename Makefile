@@ -12,7 +12,7 @@ setup:  ## make the virtual environment, install locked packages and system libr
 
 demo: setup  ## train, plan and execute grasps, and write a page that shows it (10 minutes)
 	$(PYTHON_IN_VENV) src/train.py experiment=demo
-	$(PYTHON_IN_VENV) sim/evaluate.py experiment=demo
+	$(PYTHON_IN_VENV) sim/evaluate.py experiment=demo_planning
 	$(PYTHON_IN_VENV) analysis/report.py report=demo
 
 test: lint  ## check style and types, and run all tests (10 minutes)
