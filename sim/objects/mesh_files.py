@@ -22,7 +22,8 @@ IMAGE_SUFFIXES = (".jpeg", ".jpg", ".png")
 LARGEST_M = 1.0
 SMALLEST_M = 0.005
 THINNEST_M = 0.0002
-UNDECLARED = trimesh.visual.material.SimpleMaterial().main_color
+UNDECLARED_COLOUR = trimesh.visual.material.SimpleMaterial().main_color
+UNDECLARED_TEXTURE = trimesh.visual.material.color_image()
 """What trimesh says of a material that a mesh names and no file declares."""
 TEXTURE_PIXELS = 1024
 """Textures are shrunk to this many pixels along a side; the object covers fewer in the image."""
@@ -76,11 +77,11 @@ def visual_part(mesh: trimesh.Trimesh, plain: LinearColour) -> VisualPart:
     triangles, visual = np.asarray(mesh.triangles), mesh.visual
     sides = (lambda corners: corners) if _is_closed(mesh) else two_sided
     if visual.kind == "texture":
-        image = getattr(visual.material, "image", None) or getattr(visual.material, "baseColorTexture", None)
+        image = _texture(visual.material)
         if image is not None and visual.uv is not None:
             return textured_part(sides(triangles), sides(visual.uv[mesh.faces]), _pixels(image))
         declared = visual.material.main_color
-        if declared is not None and not np.array_equal(declared, UNDECLARED):
+        if declared is not None and not np.array_equal(declared, UNDECLARED_COLOUR):
             plain = linear_rgb(np.asarray(declared[:3]))
     elif visual.kind is not None:
         colours = np.asarray(visual.face_colors)[:, :3]
@@ -103,6 +104,14 @@ def _is_closed(mesh: trimesh.Trimesh) -> bool:
     surface = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
     surface.merge_vertices()
     return bool(surface.is_volume)
+
+
+def _texture(material: Any) -> Image.Image | None:
+    image = getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
+    placeholder = UNDECLARED_TEXTURE
+    if image is None or (image.size == placeholder.size and image.tobytes() == placeholder.tobytes()):
+        return None
+    return image
 
 
 def _pixels(image: Image.Image) -> UInt8[np.ndarray, "h w 3"]:

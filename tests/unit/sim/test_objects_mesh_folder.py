@@ -162,6 +162,19 @@ class TestBareMeshes:
         assert part.texture is not None
         assert {(255, 0, 0), (0, 0, 255)} <= {tuple(pixel) for pixel in part.texture.reshape(-1, 3).tolist()}
 
+    def test_a_texture_is_kept(self, folder: Path) -> None:
+        (folder / "sheet.mtl").write_text("newmtl paint\nmap_Kd paint.png\n")
+        Image.new("RGB", (16, 16), (10, 200, 30)).save(folder / "paint.png")
+        corners = "v 0 0 0\nv .1 0 0\nv 0 .1 0\nv 0 0 .1\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl paint\n"
+        faces = "f 1/1 3/2 2/3\nf 1/1 2/2 4/3\nf 1/1 4/2 3/3\nf 2/1 3/2 4/3\n"
+        (folder / "wedge.obj").write_text("mtllib sheet.mtl\n" + corners + faces)
+        (part,) = load(folder, "wedge").visual_parts
+        assert part.texture is not None
+        assert part.texture.shape == (16, 16, 3)
+        assert tuple(part.texture[3, 3]) == (10, 200, 30)
+        assert part.uvs is not None
+        assert sorted({tuple(uv) for uv in part.uvs.tolist()}) == [(0, 0), (0, 1), (1, 0)]
+
     def test_a_fine_ball_is_thinned_for_the_physics_engine(self, folder: Path) -> None:
         trimesh.creation.icosphere(subdivisions=4, radius=0.04).export(folder / "ball.stl")
         model = load(folder, "ball")
