@@ -19,6 +19,7 @@ ROOT = Path(__file__).parents[2]
 CONF = ROOT / "conf"
 HYDRAS_OWN_KEYS = {"_target_", "_convert_", "_partial_", "_recursive_", "_args_", "defaults"}
 SCRIPTS = [path for folder in ("src", "sim", "analysis") for path in sorted((ROOT / folder).glob("*.py"))]
+DOCUMENTS = [ROOT / "Makefile", ROOT / "dvc.yaml", ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 COMMANDS = [
     command
     for script in SCRIPTS
@@ -116,3 +117,18 @@ def test_every_option_composes_and_builds(
     name = group.split("@")[-1]
     for part in buildable(OmegaConf.select(cfg, name)):
         assert instantiate(part) is not None
+
+
+def documented_commands() -> Iterator[tuple[str, str]]:
+    """(command, overrides) of every call of a command in the documents."""
+    for document in DOCUMENTS:
+        text = document.read_text(encoding="utf-8").replace("\\\n", " ")
+        for command, overrides in re.findall(r"\b(?:src|sim|analysis)/(\w+)\.py([^`#|&\n]*)", text):
+            if command in COMMANDS:
+                yield command, overrides.strip()
+
+
+@pytest.mark.parametrize(("command", "overrides"), sorted(set(documented_commands())))
+def test_documented_commands_compose(command: str, overrides: str) -> None:
+    options = [word for word in overrides.split() if not word.startswith("--") and word != "..."]
+    assert compose_command(command, *options) is not None
