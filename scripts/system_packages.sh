@@ -72,12 +72,12 @@ install() {
 print_commands() {
     say "missing: $*"
     say "type this, then run the same command again:"
-    local from=""
+    local release=""
     if [ "$(codename)" = bookworm ]; then
-        from="--target-release bookworm-backports "
+        release="--target-release bookworm-backports "
         printf "    sudo tee %s >/dev/null <<'END'\n%s\nEND\n" "$BACKPORTS_SOURCE" "$(backports_source)" >&2
     fi
-    printf '    sudo apt-get update\n    sudo apt-get install %s%s\n' "$from" "$*" >&2
+    printf '    sudo apt-get update\n    sudo apt-get install %s%s\n' "$release" "$*" >&2
 }
 
 main() {
