@@ -1,0 +1,79 @@
+"""One self-contained HTML page that shows what was learned, planned and lifted."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from analysis.evaluation_folder import read_evaluation
+from analysis.scene_section import scene_section
+from analysis.training_metrics import read_training_metrics
+from analysis.wording import planner_name
+from preshape.files import atomic_path
+from preshape.grasps.space import GraspSpace
+from preshape.hands.kinematics import HandKinematics
+from preshape.progress import Progress
+
+
+@dataclass(frozen=True, eq=False)
+class DemoPage:
+    """The page of an evaluation.
+
+    Args:
+        evaluation: folder that `sim/evaluate.py` wrote.
+        metrics: `metrics.json` of the network's training; None to leave its figures out.
+        output: the page.
+        climber: planner whose climb is shown.
+        max_scenes: scenes shown at most, from the first; figures count all.
+        space, hand: what theta means, and what is drawn at it.
+    """
+
+    evaluation: str
+    metrics: str | None
+    output: str
+    climber: str
+    max_scenes: int
+    space: GraspSpace
+    hand: HandKinematics
+
+    def write(self) -> str:
+        """Write the page and say what came out.
+
+        Raises:
+            InputError: if the evaluation or the metrics cannot be used, or the page cannot be written.
+        """
+        evaluation = read_evaluation(self.evaluation, self.space)
+        metrics = None if self.metrics is None else read_training_metrics(self.metrics)
+        scenes = evaluation.scenes.scenes[: self.max_scenes]
+        sections = []
+        with Progress("Drawing", len(scenes), "scenes") as progress:
+            for scene in scenes:
+                sections.append(scene_section(evaluation, scene, self.climber, self.hand))
+                progress.advance()
+        page = _template().render(
+            summary=evaluation.summary,
+            planners=evaluation.planners,
+            origin=evaluation.trials.origin,
+            scene_count=len(evaluation.scenes),
+            climber=self.climber,
+            metrics=metrics,
+            sections=sections,
+        )
+        with atomic_path(self.output) as temporary:
+            temporary.write_text(page, encoding="utf-8")
+        return f"Lifted: {evaluation.lifted}. Page: {Path(self.output)}"
+
+
+def _template() -> Any:
+    environment = Environment(
+        loader=PackageLoader("analysis"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["planner"] = planner_name
+    environment.filters["percent"] = lambda share: "–" if share is None else f"{100 * share:.0f} %"
+    environment.filters["prob"] = lambda prob: "–" if prob is None or prob != prob else f"{prob:.2f}"
+    return environment.get_template("demo.html")

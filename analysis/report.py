@@ -1,0 +1,20 @@
+"""Make pages and result files: `python analysis/report.py report=demo`."""
+
+import logging
+
+from hydra.utils import instantiate
+from omegaconf import DictConfig
+
+from preshape.entry_point import entry_point
+
+log = logging.getLogger(__name__)
+
+
+@entry_point("report")
+def main(cfg: DictConfig) -> None:
+    """Write the chosen report and say where it lies."""
+    log.info("%s", instantiate(cfg.report).write())
+
+
+if __name__ == "__main__":
+    main()
