@@ -27,7 +27,8 @@ def run_in_order(
         jobs: what to do.
         workers: number of processes; 1 stays in this one, None takes every core.
     """
-    if (workers or available_cores()) <= 1:
+    workers = workers or available_cores()
+    if workers <= 1:
         yield from map(build(), jobs)
         return
     os.environ.update(ONE_THREAD)

@@ -17,8 +17,8 @@ def square(number: int) -> tuple[int, int]:
     return number**2, os.getpid()
 
 
-@pytest.mark.parametrize("workers", [1, 2])
-def test_results_come_in_order_from_endless_jobs(workers: int) -> None:
+@pytest.mark.parametrize("workers", [1, 2, None])
+def test_results_come_in_order_from_endless_jobs(workers: int | None) -> None:
     results = list(islice(run_in_order(squarer, count(), workers), 7))
     assert [value for value, _ in results] == [n**2 for n in range(7)]
 

@@ -1,0 +1,35 @@
+"""Repeat recorded trials and film them: `python sim/replay.py trials=[12,40]`."""
+
+import logging
+from pathlib import Path
+
+from hydra.utils import instantiate
+from omegaconf import DictConfig
+
+from preshape.data.tables import read_data_set
+from preshape.entry_point import entry_point
+from sim.recorder import Recorder
+from sim.repetition import find_trials, repeat
+
+log = logging.getLogger(__name__)
+
+
+@entry_point("replay")
+def main(cfg: DictConfig) -> None:
+    """Write an animation and a strip of four frames of each trial."""
+    laboratory, settings, output = instantiate(cfg.laboratory), instantiate(cfg.recorder), Path(cfg.output)
+    scenes, table = read_data_set(cfg.table, laboratory.space)
+    for trial in find_trials(table, cfg.trials):
+        recorder = Recorder(settings)
+        outcome = repeat(laboratory, scenes, trial, recorder).outcome
+        caption = f"{trial.object_id}: {outcome}"
+        if recorder.frames:
+            recorder.save_animation(output / f"trial_{trial.trial_id}.webp", caption)
+            recorder.save_strip(output / f"trial_{trial.trial_id}.png", caption)
+        agreement = "as recorded" if outcome == trial.outcome else f"recorded as {trial.outcome}"
+        log.info("Trial %d (%s): %s, %s", trial.trial_id, trial.object_id, outcome, agreement)
+    log.info("Films: %s", output)
+
+
+if __name__ == "__main__":
+    main()
