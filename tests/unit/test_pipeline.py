@@ -16,8 +16,13 @@ DECIDES_NOTHING = {  # how a run is started, told and kept, not what comes out
 }
 
 
-def script_of(stage: str) -> Path:
-    return ROOT / next(word for word in STAGES[stage]["cmd"].split() if word.endswith(".py"))
+def scripts_of(stage: str) -> set[Path]:
+    return {ROOT / word for word in re.split(r"[^\w./]", str(STAGES[stage]["cmd"])) if word.endswith(".py")}
+
+
+def results_of(stage: str) -> set[str]:
+    results = (*STAGES[stage]["outs"], *STAGES[stage].get("metrics", ()))
+    return {next(iter(result)) if isinstance(result, dict) else result for result in results}
 
 
 def imported_files(path: Path) -> Iterator[Path]:
@@ -46,7 +51,7 @@ def configured_files(stage: str) -> Iterator[Path]:
 
 
 def needed_files(stage: str) -> set[Path]:
-    needed, new = set(), {script_of(stage), *configured_files(stage)}
+    needed, new = set(), {*scripts_of(stage), *configured_files(stage)}
     while new:
         needed |= new
         new = {file for path in new for file in imported_files(path)} - needed
@@ -78,7 +83,5 @@ def test_stage_depends_on_no_code_that_it_does_not_run(stage: str) -> None:
 
 @pytest.mark.parametrize("stage", STAGES)
 def test_dependencies_exist_or_are_made(stage: str) -> None:
-    made = {
-        next(iter(out)) if isinstance(out, dict) else out for each in STAGES.values() for out in each["outs"]
-    }
+    made = set().union(*map(results_of, STAGES))
     assert [name for name in STAGES[stage]["deps"] if name not in made and not (ROOT / name).exists()] == []
