@@ -79,14 +79,6 @@ class Recorder:
                 quality=60,
             )
 
-    def save_strip(self, path: Path, caption: str) -> None:
-        """Write four pictures side by side as PNG: before, around and over the object, and the end."""
-        last = {phase: k for k, phase in enumerate(self.phases)}
-        moments = [self.phases.index("approach"), last["approach"], last["close"], last["hold"]]
-        strip = [np.asarray(annotated(self.frames[k], f"{self.phases[k]} - {caption}")) for k in moments]
-        with atomic_path(path) as temporary:
-            Image.fromarray(np.concatenate(strip, axis=1)).save(temporary, format="PNG")
-
 
 def annotated(frame: UInt8[np.ndarray, "h w 3"], caption: str) -> Image.Image:
     """The picture with a caption along its lower edge."""

@@ -16,7 +16,7 @@ log = logging.getLogger(__name__)
 
 @entry_point("replay")
 def main(cfg: DictConfig) -> None:
-    """Write an animation and a strip of four frames of each trial."""
+    """Write an animation of each trial and say whether it ended as recorded."""
     laboratory, settings, output = instantiate(cfg.laboratory), instantiate(cfg.recorder), Path(cfg.output)
     scenes, table = read_data_set(cfg.table, laboratory.space)
     for trial in find_trials(table, cfg.trials):
@@ -24,8 +24,7 @@ def main(cfg: DictConfig) -> None:
         outcome = repeat(laboratory, scenes, trial, recorder).outcome
         caption = f"{trial.object_id}: {outcome}"
         if recorder.frames:
-            recorder.save_animation(output / f"trial_{trial.trial_id}.webp", caption)
-            recorder.save_strip(output / f"trial_{trial.trial_id}.png", caption)
+            recorder.save_animation(output / f"{trial.trial_id}.webp", caption)
         agreement = "as recorded" if outcome == trial.outcome else f"recorded as {trial.outcome}"
         log.info("Trial %d (%s): %s, %s", trial.trial_id, trial.object_id, outcome, agreement)
     log.info("Films: %s", output)
