@@ -3,6 +3,7 @@
 import ast
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -25,8 +26,10 @@ def results_of(stage: str) -> set[str]:
     return {next(iter(result)) if isinstance(result, dict) else result for result in results}
 
 
-def imported_files(path: Path) -> Iterator[Path]:
+@cache
+def imported_files(path: Path) -> frozenset[Path]:
     """The project's files that a file imports itself."""
+    files = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and node.module:
             modules = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
@@ -37,7 +40,8 @@ def imported_files(path: Path) -> Iterator[Path]:
         for module in modules:
             package, *rest = module.split(".")
             if package in PLACES and (file := PLACES[package].joinpath(*rest).with_suffix(".py")).is_file():
-                yield file
+                files.add(file)
+    return frozenset(files)
 
 
 def configured_files(stage: str) -> Iterator[Path]:
