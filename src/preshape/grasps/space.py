@@ -1,7 +1,7 @@
 """The grasp space: what each number of theta means for one robot."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -42,6 +42,14 @@ class GraspSpace:
         names = PALM_NAMES + tuple(joint_limits)
         units = PALM_UNITS + ("rad",) * len(joint_limits)
         return cls(name, names, units, np.array(lower), np.array(upper))
+
+    def narrowed(self, joint_ranges: Mapping[str, Sequence[float]]) -> "GraspSpace":
+        """The same space with its preshape joints limited to (low, high) in rad, where a range is given."""
+        lower, upper = self.lower.copy(), self.upper.copy()
+        for k, name in enumerate(self.names):
+            if name in joint_ranges:
+                lower[k], upper[k] = np.clip(joint_ranges[name], self.lower[k], self.upper[k])
+        return replace(self, lower=lower, upper=upper)
 
     @property
     def dim(self) -> int:

@@ -55,7 +55,9 @@ class ViewPlanner:
     ) -> GraspPlan:
         """Plan from initial grasps that are there already, so that planners can be compared."""
         theta = np.stack([grasp.theta for grasp in initial])
-        bounds = Bounds.around(theta, self.space, self.box)
+        # As in the paper (section 4.3), and because the network has seen no other preshapes.
+        space = self.space.narrowed(self.heuristic.joint_ranges)
+        bounds = Bounds.around(theta, space, self.box)
         result = self.method.plan(self._objective(observation, segmented), theta, bounds)
         faces = tuple(grasp.face for grasp in initial)
         return GraspPlan(self.name, self.space, faces, result, observation.camera.T_world_camera)

@@ -41,8 +41,9 @@ def test_inference_improves_on_the_heuristic_of_the_same_view(observation: Obser
     moved = np.abs(plan.result.theta - plan.result.initial_theta)
     assert (moved[:, :3] <= 0.05 + 1e-12).all()
     assert (moved[:, 3:6] <= 0.157 + 1e-12).all()
-    assert (plan.result.theta[:, 6:] >= -0.3).all()
-    assert (plan.result.theta[:, 6:] <= 0.4).all()
+    # The preshapes of the heuristic, which are narrower than the hand's limits.
+    assert (plan.result.theta[:, 6:] >= -0.1).all()
+    assert (plan.result.theta[:, 6:] <= 0.2).all()
 
 
 def test_the_heuristic_needs_no_network(observation: Observation) -> None:
