@@ -5,7 +5,7 @@ from jaxtyping import Float, UInt8
 
 from preshape.geometry.camera import Camera
 
-WIDTH_M = 0.56
+WIDTH_M = 0.5
 """Width of the window at the distance of the palms: room for the object and a hand on either side."""
 ASPECT = 4 / 3
 """Width over height."""

@@ -1,0 +1,30 @@
+"""Benchmarks compare the same work and write the agreed rows; how fast it is depends on the machine."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from preshape.files import read_json
+
+BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
+
+
+def test_rows_have_the_agreed_keys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    import planning_speed
+    import run
+    import training_speed
+
+    monkeypatch.setattr(planning_speed, "ITERATIONS", 2)
+    monkeypatch.setattr(planning_speed, "RUNS", 1)
+    monkeypatch.setattr(training_speed, "BATCH", 2)
+    monkeypatch.setattr(training_speed, "RUNS", 1)
+    monkeypatch.setattr(sys, "argv", ["run.py", "--output", str(tmp_path / "benchmarks.json")])
+    run.main()
+    content = read_json(tmp_path / "benchmarks.json")
+    assert {"command", "git_revision", "versions", "seed", "date", "machine"} <= set(content)
+    for row in content["rows"]:
+        assert {"name", "unit", "ours", "peer", "peer_name", "ratio", "bound_share"} <= set(row)
+        assert row["ratio"] == pytest.approx(row["peer"] / row["ours"])
+        assert row["bound_share"] > 0
