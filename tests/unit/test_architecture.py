@@ -59,6 +59,6 @@ def test_files_are_named_after_one_concept(path: Path) -> None:
 def test_entry_points_shadow_nothing(folder: str) -> None:
     # Python puts the folder of a script first on its path, so a sim/queue.py would hide the standard queue.
     packages = {path.name for path in (ROOT / "src" / "preshape").iterdir() if path.is_dir()}
-    modules = {path.stem for path in (ROOT / folder).iterdir() if path.suffix == ".py" or path.is_dir()}
+    modules = {path.stem for path in (ROOT / folder).glob("*") if path.suffix == ".py" or path.is_dir()}
     assert not modules & set(sys.stdlib_module_names)
     assert folder != "src" or not modules & packages

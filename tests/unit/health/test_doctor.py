@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from preshape.health import environment, graphics, storage
-from preshape.health.checkup import all_checks, run_checks
+from preshape.health.checkup import run_checks
 from preshape.health.finding import Finding, ProbeResult, Status, probe
 
 ROOT = Path(__file__).parents[3]
@@ -113,11 +113,6 @@ def test_one_failure_fails_the_whole(caplog: pytest.LogCaptureFixture) -> None:
     assert caplog.messages[-1] == "2 checks: 1 fine, 0 warnings, 1 failed"
 
 
-def test_this_machine_passes_every_check_of_software() -> None:
-    failed = [finding for check in all_checks(ROOT)[:7] if (finding := check()).status is Status.FAIL]
-    assert failed == []
-
-
 def test_doctor_sees_a_vulkan_that_is_gone(tmp_path: Path) -> None:
     no_driver = {"VK_ICD_FILENAMES": str(tmp_path / "no.json"), "VK_DRIVER_FILES": str(tmp_path / "no.json")}
     command = [sys.executable, str(ROOT / "src" / "doctor.py")]
@@ -127,3 +122,5 @@ def test_doctor_sees_a_vulkan_that_is_gone(tmp_path: Path) -> None:
     assert done.returncode == 1, done.stdout
     assert "FAIL  Vulkan device" in done.stdout
     assert "fix: scripts/system_packages.sh" in done.stdout
+    for name in ("Python", "PyTorch", "Open3D", "Robot data", "Shipped trial table"):
+        assert f"OK    {name}" in done.stdout
