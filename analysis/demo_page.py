@@ -10,6 +10,7 @@ from analysis.evaluation_folder import read_evaluation
 from analysis.scene_section import scene_section
 from analysis.training_metrics import read_training_metrics
 from analysis.wording import planner_name
+from preshape.errors import InputError
 from preshape.files import atomic_path
 from preshape.grasps.space import GraspSpace
 from preshape.hands.kinematics import HandKinematics
@@ -44,6 +45,12 @@ class DemoPage:
             InputError: if the evaluation or the metrics cannot be used, or the page cannot be written.
         """
         evaluation = read_evaluation(self.evaluation, self.space)
+        if self.climber not in evaluation.planners:
+            raise InputError(
+                f"{self.climber} took no part in the evaluation, so there is no climb to show",
+                where=self.evaluation,
+                fix=f"choose one of its planners with report.climber: {', '.join(evaluation.planners)}",
+            )
         metrics = None if self.metrics is None else read_training_metrics(self.metrics)
         scenes = evaluation.scenes.scenes[: self.max_scenes]
         sections = []

@@ -53,7 +53,9 @@ class FirstPass:
             "seconds_per_trial": seconds_per_trial(trials),
         }
         write_json(self.output, content)
-        return f"AUC {auc['auc']['value']:.2f}; lifted: {evaluation.lifted}. Result file: {self.output}"
+        value = auc["auc"]["value"]
+        known = "not defined" if value is None else f"{value:.2f}"
+        return f"AUC {known}; lifted: {evaluation.lifted}. Result file: {self.output}"
 
 
 def seconds_per_trial(trials: TrialTable) -> dict[str, float]:

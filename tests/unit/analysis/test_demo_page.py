@@ -13,12 +13,14 @@ from preshape.files import read_json
 from preshape.hands.allegro import allegro_hand
 
 
-def demo_page(folder: Path, output: Path, *, metrics: bool = True, max_scenes: int = 20) -> DemoPage:
+def demo_page(
+    folder: Path, output: Path, *, metrics: bool = True, climber: str = "inference", max_scenes: int = 20
+) -> DemoPage:
     return DemoPage(
         evaluation=str(folder),
         metrics=str(folder / "metrics.json") if metrics else None,
         output=str(output),
-        climber="inference",
+        climber=climber,
         max_scenes=max_scenes,
         space=allegro_space(),
         hand=allegro_hand(),
@@ -94,3 +96,9 @@ def test_a_folder_without_evaluation_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no finished evaluation"):
         demo_page(tmp_path, tmp_path / "demo.html", metrics=False).write()
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_planner_that_took_no_part_is_refused(evaluation_folder: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="took no part") as refusal:
+        demo_page(evaluation_folder, tmp_path / "demo.html", climber="sampling").write()
+    assert "heuristic, inference" in refusal.value.fix
