@@ -2,7 +2,9 @@
 
 import hashlib
 import json
+from collections import deque
 from collections.abc import Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import asdict
 from functools import cached_property
 from pathlib import Path
@@ -13,6 +15,7 @@ from jaxtyping import Float16
 from preshape.data.scene import Scene, SceneRenderer
 from preshape.files import atomic_path
 from preshape.perception.image import CHANNEL_NAMES, eight_channel_image
+from preshape.perception.observation import Observation
 from preshape.perception.patch import object_centre, object_patch
 from preshape.perception.segmentation import SegmentationSettings, segment
 from preshape.progress import Progress
@@ -21,6 +24,8 @@ PERCEPTION_VERSION = 1
 """Raised whenever the way from a view to its patch changes, so that cached patches are made anew."""
 PATCH_SIZE = 400
 """Width and height of an object patch in pixels."""
+MAX_PENDING = 2
+"""Rendered views that may wait for perception."""
 
 
 class PatchCache:
@@ -61,22 +66,29 @@ class PatchCache:
         missing = [scene for scene in scenes if _open(self.path(scene)) is None]
         if not missing:
             return
-        with Progress("Rendering", len(missing), "scenes") as progress:
+        # One thread looks at views while the next is rendered; a second would share Open3D's random numbers.
+        with (
+            Progress("Rendering", len(missing), "scenes") as progress,
+            ThreadPoolExecutor(max_workers=1) as perception,
+        ):
+            pending: deque[Future[None]] = deque()
             for scene in missing:
-                self._render(scene)
-                progress.advance()
+                pending.append(perception.submit(self._keep, scene, self._renderer(scene)))
+                while len(pending) > MAX_PENDING or (pending and scene is missing[-1]):
+                    pending.popleft().result()
+                    progress.advance()
 
     def __getitem__(self, scene: Scene) -> Float16[np.ndarray, "8 400 400"]:
         """The patch of a scene, mapped from its file, which is made if it is missing."""
         patch = _open(self.path(scene))
         if patch is None:
-            self._render(scene)
+            self._keep(scene, self._renderer(scene))
             patch = _open(self.path(scene))
             assert patch is not None
         return patch
 
-    def _render(self, scene: Scene) -> None:
-        observation = self._renderer(scene)
+    def _keep(self, scene: Scene, observation: Observation) -> None:
+        """Cut the patch out of the view and write it."""
         segmented = segment(observation, self._segmentation)
         centre = object_centre(segmented, observation.camera)
         patch = object_patch(eight_channel_image(observation), centre, PATCH_SIZE)

@@ -1,0 +1,26 @@
+"""Experiments win over what their command would do by itself."""
+
+import pytest
+from hydra import compose, initialize_config_dir
+from omegaconf import OmegaConf
+
+import preshape.entry_point  # noqa: F401 - registers the resolvers
+from preshape.paths import project_root
+
+
+@pytest.mark.parametrize(
+    ("command", "experiment", "key", "value"),
+    [
+        ("train", "paper", "split", "seen"),
+        ("train", "paper", "dataset.data.hold_out.validation_fraction", 0),
+        ("train", "paper", "run_name", "paper_config_cnn"),
+        ("train", "demo", "trainer.settings.learning.iterations", 600),
+        ("train", "demo", "run_name", "demo_config_cnn"),
+        ("evaluate", "demo_planning", "run_name", "demo"),
+        ("evaluate", "demo_planning", "evaluate.filmed_scenes", 6),
+    ],
+)
+def test_an_experiment_has_the_last_word(command: str, experiment: str, key: str, value: object) -> None:
+    with initialize_config_dir(str(project_root() / "conf"), version_base="1.3"):
+        cfg = compose(command, [f"experiment={experiment}"])
+    assert OmegaConf.select(cfg, key) == value
