@@ -37,7 +37,7 @@ class World:
         rendered: bool = False,
     ) -> None:
         self.scene = make_scene(physics, rendered=rendered)
-        build_table(self.scene, table)
+        self._supports = set(build_table(self.scene, table))
         self._object = add_object(self.scene, model, T_world_object)
         self._body = self._object.find_component_by_type(sapien.physx.PhysxRigidDynamicComponent)
         self.robot: SimulatedRobot | None = None
@@ -79,8 +79,8 @@ class World:
 
     @property
     def object_touches_support(self) -> bool:
-        """Whether anything but the hand touches the object: the table, the floor or the arm."""
-        return bool(self._touching() - (self.robot.hand_links if self.robot else set()))
+        """Whether the table or the floor touches the object."""
+        return bool(self._touching() & self._supports)
 
     def _touching(self) -> set[sapien.Entity]:
         touching = set()

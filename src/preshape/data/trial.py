@@ -13,7 +13,7 @@ class TrialOutcome(StrEnum):
     LIFTED = "lifted"
     """At least 0.13 m above its resting height at the end, held by the hand, not thrown."""
     DROPPED = "dropped"
-    """Rose with the hand and was lost."""
+    """Rose with the hand and was lost, or slid too far through it."""
     MISSED = "missed"
     """The hand closed and lifted without the object."""
     UNREACHABLE = "unreachable"
