@@ -20,7 +20,7 @@ from preshape.data.trial_table import TrialTable
 from preshape.evaluation.metrics import ClassificationMetrics, classification_metrics
 from preshape.evaluation.roc import save_roc
 from preshape.files import atomic_path, write_json
-from preshape.models.callbacks import Resumable, ShowProgress, TrackCurves
+from preshape.models.callbacks import KeepBest, Resumable, ShowProgress, TrackCurves
 from preshape.models.lightning_module import GraspLightningModule, LearningSettings
 from preshape.models.success_model import SuccessModel
 from preshape.provenance import git_revision, provenance
@@ -40,11 +40,13 @@ class TrainerSettings:
         learning: how the weights are fitted.
         accelerator: `cpu`, `gpu` or `auto`.
         precision: Lightning's name of the arithmetic, `32-true` or `bf16-mixed`.
+        keep_best: whether to end with the weights of the lowest validation loss, rather than the last.
     """
 
     learning: LearningSettings
     accelerator: str
     precision: str
+    keep_best: bool
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,8 @@ def train(
     unfinished = folder / f"unfinished-{_identity(model, data, settings)}.ckpt"
     _fit(model, data, settings, unfinished, run)
     result = _measure(model, data, settings.learning, folder, run)
-    unfinished.unlink(missing_ok=True)
+    for leftover in folder.glob("unfinished-*.ckpt"):
+        leftover.unlink()
     return result
 
 
@@ -101,15 +104,19 @@ def _fit(
     model: SuccessModel, data: GraspDataModule, settings: TrainerSettings, unfinished: Path, run: TrackedRun
 ) -> None:
     _quieten_lightning()
+    validated = len(data.validation) > 0
+    callbacks = [ShowProgress(), TrackCurves(run), Resumable(unfinished)]
+    if settings.keep_best and validated:
+        callbacks.insert(0, KeepBest())
     trainer = lightning.Trainer(
         accelerator=settings.accelerator,
         devices=1,
         precision=settings.precision,
         max_steps=settings.learning.iterations,
         max_epochs=-1,
-        limit_val_batches=None if len(data.validation) else 0,
+        limit_val_batches=None if validated else 0,
         num_sanity_val_steps=0,
-        callbacks=[ShowProgress(), TrackCurves(run), Resumable(unfinished)],
+        callbacks=callbacks,
         logger=False,
         enable_checkpointing=False,
         enable_progress_bar=False,
@@ -119,12 +126,17 @@ def _fit(
     going_on = unfinished.is_file()
     if going_on:
         log.info("Going on with the training that was interrupted: %s", unfinished)
-    trainer.fit(
-        GraspLightningModule(model, settings.learning),
-        datamodule=data,
-        ckpt_path=unfinished if going_on else None,
-        weights_only=True,
-    )
+    try:
+        trainer.fit(
+            GraspLightningModule(model, settings.learning),
+            datamodule=data,
+            ckpt_path=unfinished if going_on else None,
+            weights_only=True,
+        )
+    except SystemExit as end:  # Lightning's answer to an interrupt
+        if isinstance(end.__context__, KeyboardInterrupt):
+            raise KeyboardInterrupt from end
+        raise
 
 
 def _measure(

@@ -1,13 +1,18 @@
 """What a training shows, keeps track of and survives."""
 
+import logging
 from pathlib import Path
+from typing import Any
 
 import lightning
 from lightning.pytorch.callbacks import Callback
+from torch import Tensor
 
 from preshape.files import atomic_path
 from preshape.progress import Progress
 from preshape.tracking import TrackedRun
+
+log = logging.getLogger(__name__)
 
 SMOOTHING = 0.98
 """Share of the old value in the running mean of the loss."""
@@ -64,6 +69,41 @@ class TrackCurves(Callback):
         values = {name: float(value) for name, value in trainer.callback_metrics.items()}
         values["learning_rate"] = trainer.optimizers[0].param_groups[0]["lr"]
         self._run.log(values, trainer.global_step)
+
+
+class KeepBest(Callback):
+    """Ends a training with the weights that had the lowest validation loss.
+
+    After that a network only becomes surer of what it has seen; its probabilities, and the slopes that a
+    planner climbs, get worse.
+    """
+
+    def __init__(self) -> None:
+        self._loss = float("inf")
+        self._iteration = 0
+        self._weights: dict[str, Tensor] = {}
+
+    def on_validation_end(self, trainer: lightning.Trainer, pl_module: lightning.LightningModule) -> None:
+        """Remember the weights if they are the best so far."""
+        loss = float(trainer.callback_metrics["val_loss"])
+        if loss < self._loss:
+            self._loss, self._iteration = loss, trainer.global_step
+            self._weights = {name: value.clone() for name, value in pl_module.state_dict().items()}
+
+    def on_train_end(self, trainer: lightning.Trainer, pl_module: lightning.LightningModule) -> None:
+        """Take the best weights."""
+        if self._weights:
+            pl_module.load_state_dict(self._weights)
+            log.info("Kept the weights of iteration %d, validation loss %.3f", self._iteration, self._loss)
+
+    def state_dict(self) -> dict[str, Any]:
+        """What a training that goes on needs to know."""
+        return {"loss": self._loss, "iteration": self._iteration, "weights": self._weights}
+
+    def load_state_dict(self, state_dict: dict[str, Any]) -> None:
+        """Go on from there."""
+        self._loss, self._iteration = state_dict["loss"], state_dict["iteration"]
+        self._weights = state_dict["weights"]
 
 
 class Resumable(Callback):

@@ -1,6 +1,7 @@
 """Training: the seed decides the weights, an interruption changes nothing, every file comes out."""
 
 import json
+import signal
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -25,6 +26,7 @@ SETTINGS = TrainerSettings(
     LearningSettings(iterations=24, learning_rate=1e-2, learning_rate_factor=0.1, seed=0),
     accelerator="cpu",
     precision="32-true",
+    keep_best=True,
 )
 
 
@@ -114,6 +116,41 @@ def test_an_interrupted_training_ends_with_the_same_weights(data: GraspDataModul
     assert trained(data, disturbed, run=curves) == undisturbed
     assert 6 not in curves.steps
     assert not list(disturbed.glob("*.ckpt"))
+
+
+def test_the_best_weights_are_kept(data: GraspDataModule, tmp_path: Path) -> None:
+    class Losses(UntrackedRun):
+        losses: list[float] = []  # noqa: RUF012
+
+        def log(self, values: Mapping[str, float], step: int) -> None:
+            if "val_loss" in values:
+                self.losses.append(values["val_loss"])
+
+    learning = replace(SETTINGS.learning, learning_rate=1.0)
+    for keep_best, choose in ((True, min), (False, lambda losses: losses[-1])):
+        Losses.losses.clear()
+        settings = replace(SETTINGS, learning=learning, keep_best=keep_best)
+        network = make_network()
+        train(network, data, settings, tmp_path / str(keep_best), Losses())
+        assert len(set(Losses.losses)) == 4
+        probability = predict(network, data.val_dataloader())
+        labels = data.validation.trials.lifted
+        loss = -np.log(np.where(labels, probability, 1 - probability)).mean()
+        assert loss == pytest.approx(choose(Losses.losses), rel=1e-4)
+
+
+def test_an_interrupt_stays_an_interrupt(data: GraspDataModule, tmp_path: Path) -> None:
+    class Interrupting(UntrackedRun):
+        def log(self, values: Mapping[str, float], step: int) -> None:
+            raise KeyboardInterrupt
+
+    handler = signal.getsignal(signal.SIGINT)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            train(make_network(), data, SETTINGS, tmp_path, Interrupting())
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    assert not list(tmp_path.glob("model*"))
 
 
 def test_every_file_comes_out_and_agrees(data: GraspDataModule, tmp_path: Path) -> None:
