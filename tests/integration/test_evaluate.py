@@ -1,0 +1,72 @@
+"""`python sim/evaluate.py` and the page made of it, as a user runs them."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import torch
+
+from preshape.checkpoints import save_weights
+from preshape.data.tables import read_data_set
+from preshape.grasps.space import GraspSpace
+from preshape.models.config_cnn import ConfigCNN
+from preshape.paths import project_root
+
+
+def run(place: Path, script: str, *overrides: str) -> "subprocess.CompletedProcess[str]":
+    command = [
+        *(sys.executable, str(project_root() / script)),
+        *(f"paths.{name}={place / name}" for name in ("cache", "outputs")),
+        *overrides,
+    ]
+    return subprocess.run(command, cwd=place, capture_output=True, text=True, timeout=280, check=False)
+
+
+def test_planners_compete_on_one_scene_and_a_page_shows_it(tmp_path: Path, allegro_space: GraspSpace) -> None:
+    torch.manual_seed(0)
+    model = ConfigCNN("config_cnn", allegro_space.name, allegro_space.dim)
+    weights = tmp_path / "model.safetensors"
+    save_weights(weights, model, data_hash="none", git_revision="none", metrics={})
+    done = run(
+        tmp_path,
+        "sim/evaluate.py",
+        f"weights={weights}",
+        *(
+            "evaluate.scenes=1",
+            "evaluate.workers=1",
+            "evaluate.filmed_scenes=1",
+            "evaluator.recorder.every=150",
+        ),
+    )
+    assert done.returncode == 0, done.stderr
+    folder = tmp_path / "outputs" / "evaluate" / "config_cnn"
+    summary = json.loads((folder / "evaluation.json").read_text())["planners"]
+    assert set(summary) == {"heuristic", "max_eval", "inference"}
+    scenes, trials = read_data_set(folder, allegro_space)
+    assert len(scenes) == 1
+    for name, planner in summary.items():
+        own = trials.where((trials.rows["planner"] == name).to_numpy(dtype=bool))
+        assert planner["executed"] == len(own.executed)
+        assert planner["lifted"] == own.lifted.sum()
+    assert summary["max_eval"]["executed"] <= 1
+    assert summary["inference"]["executed"] <= 1
+    assert len(list((folder / "plans").glob("*.json"))) == 3
+
+    page = tmp_path / "page.html"
+    shown = run(
+        tmp_path,
+        "analysis/report.py",
+        *(f"report.evaluation={folder}", "report.metrics=null", f"report.output={page}"),
+    )
+    assert shown.returncode == 0, shown.stderr
+    assert shown.stdout.splitlines()[-1].endswith(str(page))
+    assert "http://" not in page.read_text().replace("http://www.w3.org", "")
+
+
+def test_weights_that_are_not_there_are_refused_before_any_work(tmp_path: Path) -> None:
+    done = run(tmp_path, "sim/evaluate.py", f"weights={tmp_path / 'missing.safetensors'}")
+    assert done.returncode == 2
+    assert "missing.safetensors" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "cache" / "evaluate").exists()
