@@ -5,6 +5,7 @@ import logging
 import warnings
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Literal
 
 import lightning
 import numpy as np
@@ -39,13 +40,13 @@ class TrainerSettings:
     Args:
         learning: how the weights are fitted.
         accelerator: `cpu`, `gpu` or `auto`.
-        precision: Lightning's name of the arithmetic, `32-true` or `bf16-mixed`.
+        precision: Lightning's name of the arithmetic, such as `32-true` or `bf16-mixed`.
         keep_best: whether to end with the weights of the lowest validation loss, rather than the last.
     """
 
     learning: LearningSettings
     accelerator: str
-    precision: str
+    precision: Literal["32-true", "16-mixed", "bf16-mixed"]
     keep_best: bool
 
 

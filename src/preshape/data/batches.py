@@ -1,6 +1,6 @@
 """Which trials make up a batch."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 from jaxtyping import Bool
@@ -83,6 +83,6 @@ class InOrder(Sampler[list[int]]):
     def __len__(self) -> int:
         return -(-self._rows // self._batch_size)
 
-    def __iter__(self) -> Iterator[Sequence[int]]:
+    def __iter__(self) -> Iterator[list[int]]:
         for first in range(0, self._rows, self._batch_size):
             yield list(range(first, min(first + self._batch_size, self._rows)))

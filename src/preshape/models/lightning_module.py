@@ -41,7 +41,8 @@ class GraspLightningModule(lightning.LightningModule):
 
     def __init__(self, model: SuccessModel, settings: LearningSettings) -> None:
         super().__init__()
-        self.model = model.to(memory_format=torch.channels_last)
+        # PyTorch's own annotations leave memory_format out
+        self.model: SuccessModel = model.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         self.settings = settings
         self.save_hyperparameters(asdict(settings), logger=False)
         self._validation: list[tuple[Tensor, Tensor]] = []
@@ -53,7 +54,9 @@ class GraspLightningModule(lightning.LightningModule):
 
     def on_train_epoch_start(self) -> None:
         """Make batches and dropout functions of seed and epoch: an interrupted training goes on alike."""
-        self.trainer.train_dataloader.sampler.begin_epoch(self.current_epoch)
+        loader = self.trainer.train_dataloader
+        assert loader is not None, "Lightning makes it before the first epoch"
+        loader.sampler.begin_epoch(self.current_epoch)
         torch.manual_seed(self.settings.seed + 7919 * (1 + self.current_epoch))
 
     def training_step(self, batch: GraspBatch) -> Float[Tensor, ""]:
