@@ -21,16 +21,20 @@ from preshape.perception.patch import object_centre, object_patch
 from preshape.perception.segmentation import SegmentationSettings, segment
 from preshape.planning.grasp_plan import GraspPlan
 
-SCALE = 3
+SCALE = 2
 """How many times an overlay is larger than the view."""
 
 
 @dataclass(frozen=True)
 class TrialEntry:
-    """One trial: who tried which grasp, what was predicted, what came of it; its film as data URI, if any."""
+    """One trial: who tried which grasp, what was predicted, what came of it; its film as data URI, if any.
+
+    `moved` says whether the planner changed the initial grasp.
+    """
 
     planner: str
     face: str
+    moved: bool
     predicted: float
     outcome: str
     mark: str
@@ -102,6 +106,7 @@ def _trial_entry(evaluation: Evaluation, trial: Trial) -> TrialEntry:
     return TrialEntry(
         planner=planner_name(trial.planner),
         face=plain_name(trial.face.value),
+        moved=not np.array_equal(trial.initial, trial.planned),
         predicted=trial.success_prob,
         outcome=trial.outcome.value,
         mark=outcome_mark(trial.outcome),

@@ -70,6 +70,15 @@ def test_every_scene_shows_view_channels_grasps_climb_and_films(page: lxml.html.
         assert scene.find_class("films")[0].xpath(".//img")
 
 
+def test_outcomes_stand_below_the_grasp_that_was_tried(page: lxml.html.HtmlElement) -> None:
+    for grasp in page.find_class("grasp"):
+        before, after = (figure.text_content() for figure in grasp.xpath(".//figure"))
+        assert "Heuristic" in before
+        assert "Inference" not in before
+        assert "Heuristic" not in after
+    assert sum("Inference" in grasp.text_content() for grasp in page.find_class("grasp")) == 2
+
+
 def test_pictures_have_a_text_and_outcomes_a_word(page: lxml.html.HtmlElement) -> None:
     assert all(image.get("alt") for image in page.xpath("//img"))
     assert all(chip.get("title") for chip in page.find_class("chip"))
