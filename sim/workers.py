@@ -7,6 +7,8 @@ from concurrent.futures import Future, ProcessPoolExecutor
 from itertools import islice
 from typing import Any, TypeVar
 
+from preshape.errors import bad_input_behind
+
 Job = TypeVar("Job")
 Result = TypeVar("Result")
 
@@ -44,16 +46,27 @@ def run_in_order(
             pool.shutdown(cancel_futures=True)
 
 
+_build: Callable[[], Callable[[Any], Any]]
 _work: Callable[[Any], Any] | None = None
 
 
 def _start_worker(build: Callable[[], Callable[[Any], Any]]) -> None:
-    global _work
-    _work = build()
+    global _build
+    _build = build
 
 
 def _do(job: Any) -> Any:
-    assert _work is not None, "the pool starts every worker by _start_worker"
+    # Built by the first job, because an error while a worker starts would only be told as a broken pool.
+    global _work
+    if _work is None:
+        try:
+            _work = _build()
+        except Exception as error:
+            # only the error itself comes back to the parent, not what it was raised from
+            bad_input = bad_input_behind(error)
+            if bad_input is None:
+                raise
+            raise bad_input from None
     return _work(job)
 
 

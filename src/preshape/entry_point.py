@@ -13,7 +13,7 @@ from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
 from preshape.composition import check_composition
-from preshape.errors import InputError
+from preshape.errors import InputError, bad_input_behind
 from preshape.paths import project_root
 
 EXIT_BAD_INPUT = 2
@@ -62,19 +62,12 @@ def _run_job(main: Callable[[DictConfig], None], cfg: DictConfig) -> None:
         check_composition(cfg)
         main(cfg)
     except Exception as error:
-        bad_input = _bad_input_behind(error)
+        bad_input = bad_input_behind(error)
         if bad_input is None:
             raise
         if HydraConfig.get().mode is RunMode.MULTIRUN:  # the sweep says which of its jobs it was
             raise bad_input from None
         _refuse(str(bad_input))
-
-
-def _bad_input_behind(error: BaseException | None) -> InputError | None:
-    """The InputError that `hydra.utils.instantiate` wrapped, if there is one."""
-    while error is not None and not isinstance(error, InputError):
-        error = error.__cause__
-    return error
 
 
 def _misuse(error: ConfigCompositionException | OverrideParseException) -> str:

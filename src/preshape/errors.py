@@ -25,3 +25,10 @@ class InputError(Exception):
     def __reduce__(self) -> tuple[Callable[[], "InputError"], tuple[()]]:
         # the default would call the class without its keywords when a worker process sends the error back
         return partial(InputError, self.what, where=self.where, fix=self.fix), ()
+
+
+def bad_input_behind(error: BaseException | None) -> InputError | None:
+    """The InputError that an exception is or was raised from, as `hydra.utils.instantiate` wraps it."""
+    while error is not None and not isinstance(error, InputError):
+        error = error.__cause__
+    return error
