@@ -1,4 +1,4 @@
-"""Collect labelled grasps: `python sim/collect.py objects=grocery collect.trials=300`."""
+"""Collect labelled grasps: `python sim/collect.py objects=grocery collect.trials=330`."""
 
 import logging
 from functools import partial

@@ -17,7 +17,7 @@ SCALE = 3
 def plan_picture(observation: Observation, plan: GraspPlan, hand: HandKinematics) -> Figure:
     """Figure with one panel per grasp, the best first: before and after planning, and what is predicted."""
     starts = plan.result.ranking.tolist()
-    figure = Figure(figsize=(6.4 * len(starts), 5.2), layout="constrained")
+    figure = Figure(figsize=(6.4 * len(starts), 5.6), layout="constrained")
     panels = figure.subplots(1, len(starts), squeeze=False).flat
     for rank, (axes, start) in enumerate(zip(panels, starts, strict=True), 1):
         face = plan.faces[start].value.replace("_", " ")
