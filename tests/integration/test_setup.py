@@ -73,7 +73,9 @@ def test_without_a_python_it_says_what_to_do(checkout: Path) -> None:
 
 
 def test_make_help_lists_every_target() -> None:
-    listed = subprocess.run(["make", "help"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    # Inside `make test` a second make would say which folder it enters.
+    command = ["make", "--no-print-directory", "help"]
+    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     targets = re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(), flags=re.MULTILINE)
     assert {"setup", "demo", "test", "lint", "bench"} <= set(targets)
     assert [line.split()[1] for line in listed.splitlines()] == targets
