@@ -3,10 +3,13 @@
 from dataclasses import dataclass
 from typing import Any
 
+from sklearn.metrics import roc_auc_score
+
 from analysis.evaluation_folder import read_evaluation
 from analysis.lift_rates import lift_rate
 from analysis.training_metrics import read_training_metrics
 from preshape.data.tables import read_data_set
+from preshape.data.trial import Face
 from preshape.data.trial_table import TrialTable
 from preshape.files import write_json
 from preshape.grasps.space import GraspSpace
@@ -47,6 +50,8 @@ class FirstPass:
             **provenance(int(evaluation.summary["seed"])),
             "trials": len(trials),
             **lift_rate(trials).to_dict(),
+            "faces": {face.value: lift_rate(of_face(trials, face)).to_dict() for face in Face},
+            "auc_of_grasp_type": auc_of_grasp_type(trials),
             "auc": {**auc["auc"], "n": auc["n"], "positives": auc["positives"]},
             "evaluation_scenes": len(evaluation.scenes),
             "planners": evaluation.planners,
@@ -56,6 +61,20 @@ class FirstPass:
         value = auc["auc"]["value"]
         known = "not defined" if value is None else f"{value:.2f}"
         return f"AUC {known}; lifted: {evaluation.lifted}. Result file: {self.output}"
+
+
+def of_face(trials: TrialTable, face: Face) -> TrialTable:
+    """The trials that aimed at one face."""
+    return trials.where((trials.rows["face"] == face.value).to_numpy(dtype=bool))
+
+
+def auc_of_grasp_type(trials: TrialTable) -> float:
+    """AUC of knowing only overhead or side: the least that a network has to beat. NaN for one class."""
+    executed = trials.executed
+    if executed.lifted.all() or not executed.lifted.any():
+        return float("nan")
+    from_side = (executed.rows["face"] != Face.TOP.value).to_numpy(dtype=bool)
+    return float(roc_auc_score(executed.lifted, from_side))
 
 
 def seconds_per_trial(trials: TrialTable) -> dict[str, float]:

@@ -40,6 +40,8 @@ def test_first_pass_holds_the_agreed_keys(data: Path, evaluation_folder: Path, t
     assert content["lifted"] == trials.lifted.sum()
     assert [content["low"], content["high"]] == list(wilson(content["lifted"], content["executed"]))
     assert {"value", "low", "high", "n"} <= set(content["auc"])
+    assert sum(face["lifted"] for face in content["faces"].values()) == content["lifted"]
+    assert 0 <= content["auc_of_grasp_type"] <= 1
     assert {"executed", "lifted", "low", "high"} <= set(content["planners"]["inference"])
     assert set(content["seconds_per_trial"]) == {"scene", "planning", "physics", "rendering"}
 
