@@ -9,7 +9,7 @@ from pathlib import Path
 
 from preshape.data.scene import Scene
 from preshape.data.tables import SCENES_FILE, TRIALS_FILE, read_data_set, write_scenes, write_trials
-from preshape.data.trial import Trial, TrialOutcome
+from preshape.data.trial import Trial
 from preshape.data.trial_table import SceneTable, TableOrigin, TrialTable
 from preshape.errors import InputError
 from preshape.grasps.space import GraspSpace
@@ -64,7 +64,7 @@ def collect(
     """
     scenes: list[Scene] = []
     trials: list[Trial] = []
-    executed = 0
+    executed = lifted = 0
     build = partial(_scene_worker, factory, settings.seed, parts)
     limit = int(settings.trials * settings.max_scenes_per_trial) + 10
     with Progress("Collecting", settings.trials, "executed trials") as progress:
@@ -73,9 +73,8 @@ def collect(
             scenes += found_scenes.scenes
             trials += found.to_trials()
             executed += len(found.executed)
-            progress.advance(
-                len(found.executed), f"{sum(t.outcome is TrialOutcome.LIFTED for t in trials)} lifted"
-            )
+            lifted += int(found.lifted.sum())
+            progress.advance(len(found.executed), f"{lifted} lifted")
             if executed >= settings.trials:
                 break
         else:

@@ -10,7 +10,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from preshape.entry_point import entry_point
 from preshape.files import file_hash
-from sim.evaluation import evaluate
+from sim.evaluation import SUMMARY_FILE, evaluate
 from sim.evaluation_summary import summarise, write_summary
 from sim.fingerprint import fingerprint
 
@@ -30,7 +30,7 @@ def main(cfg: DictConfig) -> None:
         partial(instantiate, cfg.evaluator), origin, space, settings, parts=parts, output=output
     )
     summary = summarise(trials)
-    write_summary(output / "evaluation.json", summary, settings.seed)
+    write_summary(output / SUMMARY_FILE, summary, settings.seed)
     log.info("Lifted: %s. Folder: %s", ", ".join(str(planner) for planner in summary), output)
 
 

@@ -1,5 +1,6 @@
 """Comparing planners: all plan on the same views of new scenes, and their grasps are executed."""
 
+import logging
 import shutil
 import time
 from collections.abc import Callable, Mapping
@@ -27,6 +28,9 @@ from sim.recorder import Recorder, RecorderSettings
 from sim.trial import PlannedGrasp
 from sim.workers import run_in_order
 
+log = logging.getLogger(__name__)
+
+SUMMARY_FILE = "evaluation.json"
 PICTURES = ("plans", "views", "animations")
 """Folders of an evaluation beside its tables."""
 
@@ -172,7 +176,8 @@ def _try_planners(
     start = time.perf_counter()
     try:
         view = evaluator.laboratory.view(scene)
-    except InputError:
+    except InputError as error:
+        log.warning("Scene %d (%s) is left out: %s", scene.scene_id, scene.object_id, error.what)
         return []
     seconds = time.perf_counter() - start
     save_view(folder / "views" / f"{scene.scene_id}", view.observation)
@@ -220,6 +225,8 @@ def _execute(
 
 
 def _assemble(output: Path, folders: list[Path], scenes: SceneTable, trials: TrialTable) -> None:
+    # Its summary, written last by the command, says that a folder is complete.
+    (output / SUMMARY_FILE).unlink(missing_ok=True)
     for name in PICTURES:
         shutil.rmtree(output / name, ignore_errors=True)
         for folder in folders:

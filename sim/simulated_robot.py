@@ -76,11 +76,6 @@ class SimulatedRobot:
         return {finger: tuple(numbers[j] for j in joints) for finger, joints in self.robot.fingers.items()}
 
     @property
-    def arm_positions(self) -> Float[np.ndarray, "7"]:
-        """Measured joint angles of the arm (rad)."""
-        return self.articulation.qpos[self._arm].astype(np.float64)
-
-    @property
     def hand_positions(self) -> Float[np.ndarray, "16"]:
         """Measured joint angles of the hand (rad)."""
         return self.articulation.qpos[self._hand].astype(np.float64)
