@@ -1,9 +1,7 @@
 """Collecting labelled grasps: scenes in parallel, every scene safe on disk as soon as it is done."""
 
-import logging
-import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -14,14 +12,9 @@ from preshape.data.trial_table import SceneTable, TableOrigin, TrialTable
 from preshape.errors import InputError
 from preshape.grasps.space import GraspSpace
 from preshape.progress import Progress
-from sim.laboratory import Laboratory, LaboratoryFactory, trial_seed
-from sim.trial import PlannedGrasp
+from sim.heuristic_trials import try_heuristic_grasps
+from sim.laboratory import Laboratory, LaboratoryFactory
 from sim.workers import run_in_order
-
-GRASPS_PER_SCENE = 3
-"""The top face and two side faces."""
-
-log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -103,28 +96,3 @@ def _finished_scene(laboratory: Laboratory, run_seed: int, parts: Path, scene_id
             folder / TRIALS_FILE, TrialTable.from_trials(trials, laboratory.space, laboratory.origin)
         )
     return folder
-
-
-def try_heuristic_grasps(laboratory: Laboratory, run_seed: int, scene: Scene) -> list[Trial]:
-    """Trials of the heuristic initial grasps of one scene; none if its object cannot be made out."""
-    start = time.perf_counter()
-    try:
-        view = laboratory.view(scene)
-    except InputError as error:
-        log.warning("Scene %d (%s) is left out: %s", scene.scene_id, scene.object_id, error.what)
-        return []
-    seconds = time.perf_counter() - start
-    trials = []
-    for k, grasp in enumerate(view.initial):
-        planned = PlannedGrasp(
-            trial_id=scene.scene_id * GRASPS_PER_SCENE + k,
-            planner="heuristic",
-            face=grasp.face,
-            initial=grasp.theta,
-            planned=grasp.theta,
-            success_prob=float("nan"),
-            seed=trial_seed(run_seed, scene.scene_id, k),
-        )
-        trial = laboratory.runner.run(scene, planned)
-        trials.append(replace(trial, rendering_s=seconds / len(view.initial)))
-    return trials

@@ -22,7 +22,7 @@ from preshape.planning.grasp_plan import GraspPlan
 from preshape.planning.plan_files import write_plan
 from preshape.planning.view_planner import ViewPlanner
 from preshape.progress import Progress
-from sim.collection import GRASPS_PER_SCENE
+from sim.heuristic_trials import GRASPS_PER_SCENE
 from sim.laboratory import Laboratory, SceneView, trial_seed
 from sim.recorder import Recorder, RecorderSettings
 from sim.trial import PlannedGrasp
