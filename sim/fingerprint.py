@@ -3,7 +3,7 @@
 import hashlib
 import json
 from functools import cache
-from pathlib import Path
+from importlib.metadata import version
 from typing import Any
 
 from omegaconf import DictConfig, OmegaConf
@@ -17,11 +17,17 @@ SOURCES = (
     "src/preshape/grasps",
     "src/preshape/data",
 )
-"""Code whose change may change a trial."""
+"""Folders whose change may change a trial."""
+KINDS = ("*.py", "*.csv")
+"""Files there that count: code and the table of objects."""
+PACKAGES = (
+    *("coacd", "coal", "numpy", "ompl", "open3d", "pin", "sapien", "scipy", "toppra", "torch", "trimesh"),
+)
+"""Packages whose change may change a trial."""
 
 
 def fingerprint(*parts: Any) -> str:
-    """Hash of configuration and values together with the code that turns them into trials.
+    """Hash of configuration and values together with the code and packages that turn them into trials.
 
     Args:
         parts: configuration nodes, or anything that JSON can hold.
@@ -29,7 +35,7 @@ def fingerprint(*parts: Any) -> str:
     plain = [
         OmegaConf.to_container(part, resolve=True) if isinstance(part, DictConfig) else part for part in parts
     ]
-    text = json.dumps([plain, _source_digest()], sort_keys=True)
+    text = json.dumps([plain, _source_digest(), {name: version(name) for name in PACKAGES}], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
@@ -37,7 +43,8 @@ def fingerprint(*parts: Any) -> str:
 def _source_digest() -> str:
     digest = hashlib.sha256()
     for folder in SOURCES:
-        for path in sorted((project_root() / folder).rglob("*.py")):
-            digest.update(path.name.encode())
-            digest.update(Path(path).read_bytes())
+        for path in sorted((project_root() / folder).rglob("*")):
+            if path.is_file() and path.parent.name != "__pycache__":
+                digest.update(path.name.encode())
+                digest.update(path.read_bytes())
     return digest.hexdigest()

@@ -1,5 +1,7 @@
 """The grocery objects have the declared size, are closed, and stand where they are put."""
 
+import hashlib
+
 import numpy as np
 import pytest
 import sapien
@@ -10,24 +12,17 @@ from scipy.spatial.transform import Rotation
 from preshape.errors import InputError
 from preshape.geometry.pose import make_pose
 from sim.objects.actor import add_object
-from sim.objects.grocery import GROCERY_ITEMS, GrocerySet
+from sim.objects.grocery import FAMILIES, GROCERY_ITEMS, GrocerySet
 from sim.objects.object_model import ObjectModel
 from sim.physics import PhysicsSettings, make_scene
 from sim.table import TableSettings, build_table
 
 GROCERY = GrocerySet()
-PAPER_TEST_OBJECTS = {
-    "coffee_mate_french_vanilla",
-    "pringles_bbq",
-    "aunt_jemima_original_syrup",
-    "detergent",
-    "canon_ack_e10_box",
-    "suave_sweet_guava_nectar_body_wash",
-    "cholula_chipotle_hot_sauce",
-    "mom_to_mom_butternut_squash_pear",
-    "vo5_extra_body_volumizing_shampoo",
-    "3m_high_tack_spray_adhesive",
-}
+GLASS = {"sauce_bottle", "contour_bottle"}
+HOLLOW = {"open_cup", "sleeve", "plate"}
+"""Their holes collide as octagons, so that the walls are thicker than they look."""
+BIGBIRD_NAMES = "c0fb4fb594560b88539e57f1041f32bb30c175fced6da5e838cd719efdfeffa3"
+"""SHA-256 of the data set's list of objects, one name a line, sorted."""
 
 
 def on_table(model: ObjectModel, yaw: float, above: float) -> tuple[sapien.Scene, sapien.Entity]:
@@ -39,8 +34,14 @@ def on_table(model: ObjectModel, yaw: float, above: float) -> tuple[sapien.Scene
     return scene, add_object(scene, model, pose)
 
 
-def test_the_objects_of_the_paper_are_there() -> None:
-    assert set(GROCERY.names) >= PAPER_TEST_OBJECTS
+def test_the_names_are_those_of_bigbird() -> None:
+    text = "\n".join(GROCERY.names)
+    assert len(GROCERY.names) == 125
+    assert hashlib.sha256(text.encode()).hexdigest() == BIGBIRD_NAMES
+
+
+def test_every_shape_family_is_in_use() -> None:
+    assert {item.family for item in GROCERY_ITEMS.values()} == set(FAMILIES)
 
 
 @pytest.mark.parametrize("name", GROCERY.names)
@@ -58,7 +59,10 @@ class TestEveryItem:
         assert surface.is_watertight
         assert surface.is_winding_consistent
         np.testing.assert_allclose(surface.bounds, model.bounds, atol=1e-3)
-        assert surface.volume == pytest.approx(model.volume_m3, rel=0.05)
+        if GROCERY_ITEMS[name].family in HOLLOW:
+            assert 0.5 * model.volume_m3 < surface.volume < model.volume_m3
+        else:
+            assert surface.volume == pytest.approx(model.volume_m3, rel=0.05)
 
     def test_normals_point_outwards(self, name: str) -> None:
         for part in GROCERY.load(name).visual_parts:
@@ -69,17 +73,18 @@ class TestEveryItem:
 
     def test_parts_suit_the_physics_engine(self, name: str) -> None:
         parts = GROCERY.load(name).collision_parts
-        assert len(parts) <= 6
+        assert len(parts) <= (9 if GROCERY_ITEMS[name].family in HOLLOW else 6)
         for part in parts:
             assert len(ConvexHull(part).vertices) == len(part) <= 128
 
     def test_weighs_what_its_density_says(self, name: str) -> None:
         model = GROCERY.load(name)
-        assert 100 < model.density < 1100
+        assert model.mass_kg == pytest.approx(GROCERY_ITEMS[name].mass_g / 1000)
+        assert 100 < model.density < (1350 if GROCERY_ITEMS[name].family in GLASS else 1100)
         assert GrocerySet(density=100.0).load(name).density == pytest.approx(100)
         _, entity = on_table(model, 0.0, 0.0)
         body = entity.find_component_by_type(sapien.physx.PhysxRigidDynamicComponent)
-        assert body.mass == pytest.approx(model.mass_kg, rel=1e-3)
+        assert body.mass == pytest.approx(model.mass_kg, rel=4e-3)
         np.testing.assert_allclose(body.cmass_local_pose.p, 0, atol=5e-5)
 
     def test_stands_still_where_it_was_put(self, name: str) -> None:

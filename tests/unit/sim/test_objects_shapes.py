@@ -12,8 +12,6 @@ from sim.objects.object_model import ObjectModel, volume_and_centroid
 from sim.objects.resting_pose import stood_up
 from sim.objects.shading import crease_normals, painted_part
 
-GREY = (0.5, 0.5, 0.5)
-
 
 def model_of(*meshes: trimesh.Trimesh) -> ObjectModel:
     return ObjectModel("solid", tuple(np.array(mesh.vertices) for mesh in meshes), (), 1.0, 1.0).centred()
@@ -50,7 +48,7 @@ def test_moving_a_model_there_and_back_changes_nothing() -> None:
     [((1, 1), 1), ((1, 1, 1, 1), 1), ((1, 0.5, 0.2), 2), ((0.5, 1, 0.5), 1), ((1, 0.4, 1), 2)],
 )
 def test_a_loft_has_as_few_convex_parts_as_fill_it(diameters: tuple[float, ...], parts: int) -> None:
-    loft = [Station(float(z), d, d, 2.0, GREY) for z, d in enumerate(diameters)]
+    loft = [Station(float(z), d, d, 2.0, "body") for z, d in enumerate(diameters)]
     assert len(convex_parts(loft)) == parts
 
 
