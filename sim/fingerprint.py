@@ -18,8 +18,6 @@ SOURCES = (
     "src/preshape/data",
 )
 """Folders whose change may change a trial."""
-KINDS = ("*.py", "*.csv")
-"""Files there that count: code and the table of objects."""
 PACKAGES = (
     *("coacd", "coal", "numpy", "ompl", "open3d", "pin", "sapien", "scipy", "toppra", "torch", "trimesh"),
 )
