@@ -5,12 +5,13 @@ from functools import partial
 from pathlib import Path
 
 from hydra.utils import instantiate
-from omegaconf import DictConfig
+from omegaconf import DictConfig, OmegaConf
 
-from preshape.data.tables import SCENES_FILE, TRIALS_FILE, write_scenes, write_trials
+from preshape.data.tables import write_data_set
 from preshape.entry_point import entry_point
-from sim.collection import CollectionSettings, collect
+from sim.collection import CollectionSettings, collect, one_at_a_time
 from sim.fingerprint import fingerprint
+from sim.finished_scenes import to_tables
 
 log = logging.getLogger(__name__)
 
@@ -18,21 +19,21 @@ log = logging.getLogger(__name__)
 @entry_point("collect")
 def main(cfg: DictConfig) -> None:
     """Collect until enough trials were executed, then write both tables."""
-    settings = CollectionSettings(cfg.collect.trials, cfg.collect.seed, cfg.collect.workers)
-    parts = Path(cfg.paths.cache) / "collect" / fingerprint(cfg.laboratory, cfg.collect.seed)
-    origin, space = instantiate(cfg.laboratory.origin), instantiate(cfg.robot.grasp_space)
-    scenes, trials = collect(partial(instantiate, cfg.laboratory), origin, space, settings, parts)
-    output = Path(cfg.collect.output)
-    write_scenes(output / SCENES_FILE, scenes)
-    write_trials(output / TRIALS_FILE, trials)
-    log.info(
-        "Lifted %d of %d executed trials (%d planned) on %d scenes: %s",
-        trials.lifted.sum(),
-        len(trials.executed),
-        len(trials),
-        len(scenes),
-        output,
-    )
+    want = cfg.collect
+    settings = CollectionSettings(want.trials, want.seed, want.block, want.workers, want.scene_limit_s)
+    name = fingerprint(cfg.laboratory, instantiate(cfg.objects.set).fingerprint, want.seed, want.block)
+    parts, output = Path(cfg.paths.cache) / "collect" / name, Path(want.output)
+    OmegaConf.resolve(cfg.laboratory)  # worker processes may lack our resolvers
+    finished = collect(partial(instantiate, cfg.laboratory), settings, parts)
+    with one_at_a_time(parts / "table.lock", wait=cfg.shard is None) as my_turn:
+        if not my_turn:
+            log.info("Enough trials; another shard writes the table: %s", output)
+            return
+        origin, space = instantiate(cfg.laboratory.origin), instantiate(cfg.robot.grasp_space)
+        scenes, trials = to_tables(finished, origin, space)
+        write_data_set(output, scenes, trials)
+    n_lifted, n_executed = trials.lifted.sum(), len(trials.executed)
+    log.info("Lifted %d of %d executed trials on %d scenes: %s", n_lifted, n_executed, len(scenes), output)
 
 
 if __name__ == "__main__":

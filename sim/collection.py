@@ -1,20 +1,20 @@
 """Collecting labelled grasps: scenes in parallel, every scene safe on disk as soon as it is done."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import fcntl
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from preshape.data.scene import Scene
-from preshape.data.tables import SCENES_FILE, TRIALS_FILE, read_data_set, write_scenes, write_trials
-from preshape.data.trial import Trial
-from preshape.data.trial_table import SceneTable, TableOrigin, TrialTable
+from preshape.data.trial import TrialOutcome
 from preshape.errors import InputError
-from preshape.grasps.space import GraspSpace
-from preshape.progress import Progress
+from sim.finished_scenes import FinishedScene
+from sim.finishing import GuardedRunner, WorkerSettings, finish_scenes
 from sim.heuristic_trials import try_heuristic_grasps
 from sim.laboratory import Laboratory, LaboratoryFactory
-from sim.workers import run_in_order
+from sim.scene_claims import SceneClaims
+from sim.workers import BeginStep, Work
 
 
 @dataclass(frozen=True)
@@ -24,75 +24,99 @@ class CollectionSettings:
     Args:
         trials: executed trials wanted; unreachable ones come on top and are recorded, too.
         seed: seed of the run; with the number of a trial it decides everything random in it.
-        workers: number of processes; None takes every core.
+        block: number of consecutive scenes that a process claims at a time.
+        workers: number of worker processes; None takes every core.
+        scene_limit_s: a worker that needs longer for a scene is taken for stuck, and replaced (s).
         max_scenes_per_trial: gives up after this many scenes per executed trial wanted.
     """
 
     trials: int
     seed: int
+    block: int = 8
     workers: int | None = None
+    scene_limit_s: float = 300.0
     max_scenes_per_trial: float = 3.0
 
 
-def collect(
-    factory: LaboratoryFactory,
-    origin: TableOrigin,
-    space: GraspSpace,
-    settings: CollectionSettings,
-    parts: Path,
-) -> tuple[SceneTable, TrialTable]:
-    """Collect trials scene by scene, in the order of scene numbers, until enough were executed.
+@dataclass
+class ExecutedTrials:
+    """Enough are so many executed trials.
 
-    Every finished scene is a folder under `parts`. A second start takes those as they are and goes on, so
-    that a run that was killed ends with the table of one that was not, however many workers either had.
+    Args:
+        wanted: how many.
+        lifted: how many of those counted were lifted.
+    """
+
+    wanted: int
+    lifted: int = 0
+    unit: str = "executed trials"
+
+    @property
+    def note(self) -> str:
+        """How many were lifted."""
+        return f"{self.lifted} lifted"
+
+    def count(self, finished: FinishedScene) -> int:
+        """The scene's executed trials."""
+        self.lifted += sum(trial.outcome is TrialOutcome.LIFTED for trial in finished.trials)
+        return sum(trial.outcome.executed for trial in finished.trials)
+
+
+def collect(factory: LaboratoryFactory, settings: CollectionSettings, parts: Path) -> Iterator[FinishedScene]:
+    """Collect trials scene by scene until enough were executed in the scenes from the first on.
+
+    Every finished scene is kept under `parts`. A second start goes on from there, and several processes, here
+    or on other machines, share the work if they work in the same folder. Whoever does it, the scenes that
+    come out are the same.
 
     Args:
         factory: builds the laboratory in each worker.
-        origin, space: what the tables are about.
         settings: what to collect.
-        parts: folder of finished scenes; must belong to this configuration and seed alone.
+        parts: folder of finished scenes; must belong to this configuration, seed and block size alone.
+
+    Returns:
+        The finished scenes in the order of their numbers.
 
     Raises:
         InputError: if hardly any trial can be executed, or nothing can be written to `parts`.
     """
-    scenes: list[Scene] = []
-    trials: list[Trial] = []
-    executed = lifted = 0
-    build = partial(_scene_worker, factory, settings.seed, parts)
     limit = int(settings.trials * settings.max_scenes_per_trial) + 10
-    with Progress("Collecting", settings.trials, "executed trials") as progress:
-        for folder in run_in_order(build, iter(range(limit)), settings.workers):
-            found_scenes, found = read_data_set(folder, space)
-            scenes += found_scenes.scenes
-            trials += found.to_trials()
-            executed += len(found.executed)
-            lifted += int(found.lifted.sum())
-            progress.advance(len(found.executed), f"{lifted} lifted")
-            if executed >= settings.trials:
-                break
-        else:
-            raise InputError(
-                f"Only {executed} of {settings.trials} trials could be executed in {limit} scenes",
-                where=parts,
-                fix="check that the objects are of a size and in a place that the robot can reach",
-            )
-    return SceneTable(origin, tuple(scenes)), TrialTable.from_trials(trials, space, origin)
-
-
-def _scene_worker(factory: LaboratoryFactory, run_seed: int, parts: Path) -> Callable[[int], Path]:
-    return partial(_finished_scene, factory(), run_seed, parts)
-
-
-def _finished_scene(laboratory: Laboratory, run_seed: int, parts: Path, scene_id: int) -> Path:
-    """Folder with the tables of one scene, worked on now unless it is there."""
-    folder = parts / f"{scene_id:06d}"
-    # The trials are written last: if they are there, the scene is complete.
-    if not (folder / TRIALS_FILE).exists():
-        scene = laboratory.scenes.make(run_seed, scene_id)
-        scenes = () if scene is None else (scene,)
-        trials = [] if scene is None else try_heuristic_grasps(laboratory, run_seed, scene)
-        write_scenes(folder / SCENES_FILE, SceneTable(laboratory.origin, scenes))
-        write_trials(
-            folder / TRIALS_FILE, TrialTable.from_trials(trials, laboratory.space, laboratory.origin)
+    claims = SceneClaims(parts, settings.block, limit, ExecutedTrials(settings.trials))
+    workers = WorkerSettings(settings.workers, settings.scene_limit_s)
+    finish_scenes("Collecting", partial(_scene_worker, factory, settings.seed), claims, workers)
+    if claims.exhausted:
+        raise InputError(
+            f"Only {claims.counted} of {settings.trials} trials could be executed in {limit} scenes",
+            where=parts,
+            fix="check that the objects are of a size and in a place that the robot can reach",
         )
-    return folder
+    return claims.finished()
+
+
+@contextmanager
+def one_at_a_time(lock: Path, *, wait: bool) -> Iterator[bool]:
+    """Keep other processes out of the body.
+
+    Args:
+        lock: the file that they all lock.
+        wait: whether to wait for them. Otherwise the body is told False if one of them is in it.
+    """
+    with lock.open("a") as handle:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            yield False
+        else:
+            yield True
+
+
+def _scene_worker(factory: LaboratoryFactory, run_seed: int) -> Work[int, FinishedScene]:
+    return partial(_finish_scene, factory(), run_seed)
+
+
+def _finish_scene(laboratory: Laboratory, run_seed: int, scene_id: int, begin: BeginStep) -> FinishedScene:
+    scene = laboratory.scenes.make(run_seed, scene_id)
+    if scene is None:
+        return FinishedScene(scene_id, None, ())
+    guarded = replace(laboratory, runner=GuardedRunner(laboratory.runner, begin))
+    return FinishedScene(scene_id, scene, tuple(try_heuristic_grasps(guarded, run_seed, scene)))

@@ -11,7 +11,7 @@ from typing import Any
 
 from preshape.checkpoints import load_weights
 from preshape.data.scene import Scene
-from preshape.data.tables import SCENES_FILE, TRIALS_FILE, read_data_set, write_scenes, write_trials
+from preshape.data.tables import write_data_set
 from preshape.data.trial import Trial
 from preshape.data.trial_table import SceneTable, TableOrigin, TrialTable
 from preshape.errors import InputError
@@ -21,18 +21,22 @@ from preshape.perception.view_files import save_view
 from preshape.planning.grasp_plan import GraspPlan
 from preshape.planning.plan_files import write_plan
 from preshape.planning.view_planner import ViewPlanner
-from preshape.progress import Progress
+from sim.finished_scenes import FinishedScene, to_tables
+from sim.finishing import GuardedRunner, WorkerSettings, finish_scenes
 from sim.heuristic_trials import GRASPS_PER_SCENE
 from sim.laboratory import Laboratory, SceneView, trial_seed
 from sim.recorder import Recorder, RecorderSettings
+from sim.scene_claims import SceneClaims
 from sim.trial import PlannedGrasp
-from sim.workers import run_in_order
+from sim.workers import BeginStep, Work
 
 log = logging.getLogger(__name__)
 
 SUMMARY_FILE = "evaluation.json"
 PICTURES = ("plans", "views", "animations")
 """Folders of an evaluation beside its tables."""
+BLOCK = 8
+"""Consecutive scenes that one process claims at a time."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +59,23 @@ class EvaluationSettings:
     every_grasp_of: tuple[str, ...] = ("heuristic",)
     filmed_scenes: int = 0
     filmed_planners: tuple[str, ...] = ("heuristic", "inference")
+
+
+@dataclass(frozen=True)
+class UsableScenes:
+    """Enough are so many scenes on which something could be tried.
+
+    Args:
+        wanted: how many.
+    """
+
+    wanted: int
+    unit: str = "scenes"
+    note: str = ""
+
+    def count(self, finished: FinishedScene) -> int:
+        """1 for a scene that can be used."""
+        return int(bool(finished.trials))
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,52 +143,42 @@ def evaluate(
     Raises:
         InputError: if most scenes fail, or nothing can be written.
     """
+    claims = SceneClaims(parts, BLOCK, 2 * settings.scenes + 5, UsableScenes(settings.scenes))
     build = partial(_scene_worker, factory, settings, parts)
-    folders: list[Path] = []
-    scenes: list[Scene] = []
-    trials: list[Trial] = []
-    with Progress("Evaluating", settings.scenes, "scenes") as progress:
-        for folder in run_in_order(build, iter(range(2 * settings.scenes + 5)), settings.workers):
-            found_scenes, found = read_data_set(folder, space)
-            if len(found) == 0:
-                continue
-            folders.append(folder)
-            scenes += found_scenes.scenes
-            trials += found.to_trials()
-            progress.advance()
-            if len(folders) == settings.scenes:
-                break
-        else:
-            raise InputError(
-                f"Only {len(folders)} of {settings.scenes} scenes could be used",
-                where=parts,
-                fix="look at the warnings above; check the objects and the camera",
-            )
-    table = TrialTable.from_trials(trials, space, origin)
-    _assemble(output, folders, SceneTable(origin, tuple(scenes)), table)
-    return table
+    finish_scenes("Evaluating", build, claims, WorkerSettings(settings.workers))
+    if claims.exhausted:
+        raise InputError(
+            f"Only {claims.counted} of {settings.scenes} scenes could be used",
+            where=parts,
+            fix="look at the warnings above; check the objects and the camera",
+        )
+    used = [finished for finished in claims.finished() if finished.trials]
+    scenes, trials = to_tables(iter(used), origin, space)
+    _assemble(output, [_folder(parts, finished.scene_id) for finished in used], scenes, trials)
+    return trials
+
+
+def _folder(parts: Path, scene_id: int) -> Path:
+    """Where the pictures of a scene are kept until the evaluation is complete."""
+    return parts / f"{scene_id:06d}"
 
 
 def _scene_worker(
     factory: Callable[[], Evaluator], settings: EvaluationSettings, parts: Path
-) -> Callable[[int], Path]:
-    return partial(_finished_scene, factory(), settings, parts)
+) -> Work[int, FinishedScene]:
+    return partial(_finish_scene, factory(), settings, parts)
 
 
-def _finished_scene(evaluator: Evaluator, settings: EvaluationSettings, parts: Path, scene_id: int) -> Path:
-    """Folder of one evaluated scene, worked on now unless it is there."""
-    folder, laboratory = parts / f"{scene_id:06d}", evaluator.laboratory
-    # The trials are written last: if they are there, the scene is complete.
-    if not (folder / TRIALS_FILE).exists():
-        scene = laboratory.scenes.make(settings.seed, scene_id)
-        scenes, trials = (
-            ((), []) if scene is None else ((scene,), _try_planners(evaluator, settings, scene, folder))
-        )
-        write_scenes(folder / SCENES_FILE, SceneTable(laboratory.origin, scenes))
-        write_trials(
-            folder / TRIALS_FILE, TrialTable.from_trials(trials, laboratory.space, laboratory.origin)
-        )
-    return folder
+def _finish_scene(
+    evaluator: Evaluator, settings: EvaluationSettings, parts: Path, scene_id: int, begin: BeginStep
+) -> FinishedScene:
+    laboratory = evaluator.laboratory
+    scene = laboratory.scenes.make(settings.seed, scene_id)
+    if scene is None:
+        return FinishedScene(scene_id, None, ())
+    guarded = replace(laboratory, runner=GuardedRunner(laboratory.runner, begin))
+    trials = _try_planners(replace(evaluator, laboratory=guarded), settings, scene, _folder(parts, scene_id))
+    return FinishedScene(scene_id, scene, tuple(trials))
 
 
 def _try_planners(
@@ -232,5 +243,4 @@ def _assemble(output: Path, folders: list[Path], scenes: SceneTable, trials: Tri
         for folder in folders:
             if (folder / name).is_dir():
                 shutil.copytree(folder / name, output / name, dirs_exist_ok=True)
-    write_scenes(output / SCENES_FILE, scenes)
-    write_trials(output / TRIALS_FILE, trials)
+    write_data_set(output, scenes, trials)

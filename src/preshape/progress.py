@@ -18,15 +18,22 @@ class Progress:
         total: how many units there are.
         unit: what is counted.
         line_every_s: seconds between two lines where there is no terminal.
+        done: units that were done before, which say nothing about the time left.
     """
 
-    def __init__(self, what: str, total: int, unit: str = "it", line_every_s: float = 20.0) -> None:
+    def __init__(
+        self, what: str, total: int, unit: str = "it", line_every_s: float = 20.0, done: int = 0
+    ) -> None:
         self._what, self._total, self._unit = what, total, unit
         self._every_s = line_every_s
-        self._done = 0
+        self._done = self._before = min(done, total)
         self._start = self._last_line = time.monotonic()
         terminal = sys.stderr.isatty()
-        self._bar = tqdm(total=total, desc=what, unit=unit, dynamic_ncols=True) if terminal else None
+        self._bar = (
+            tqdm(total=total, desc=what, unit=unit, initial=self._done, dynamic_ncols=True)
+            if terminal
+            else None
+        )
 
     def __enter__(self) -> "Progress":
         return self
@@ -51,7 +58,13 @@ class Progress:
             log.info("%s", self._line(now - self._start, note))
 
     def _line(self, elapsed_s: float, note: str) -> str:
-        left = elapsed_s * (self._total - self._done) / self._done if self._done else float("nan")
-        end = f"about {left:.0f} s left" if self._done < self._total else f"{elapsed_s:.0f} s"
+        new = self._done - self._before
+        if self._done >= self._total:
+            end = f"{elapsed_s:.0f} s"
+        elif new:
+            left = elapsed_s * (self._total - self._done) / new
+            end = f"{3600 * new / elapsed_s:.0f} per hour, about {left:.0f} s left"
+        else:
+            end = f"none new in {elapsed_s:.0f} s"
         text = f"{self._what}: {self._done} of {self._total} {self._unit}, {end}"
         return f"{text} ({note})" if note else text

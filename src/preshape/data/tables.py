@@ -150,6 +150,16 @@ def read_data_set(folder: str | Path, space: GraspSpace) -> tuple[SceneTable, Tr
     return scenes, trials
 
 
+def write_data_set(folder: str | Path, scenes: SceneTable, trials: TrialTable) -> None:
+    """Write the scenes and trials of a data set, each atomically.
+
+    Raises:
+        InputError: if the folder cannot be written to.
+    """
+    write_scenes(Path(folder) / SCENES_FILE, scenes)
+    write_trials(Path(folder) / TRIALS_FILE, trials)
+
+
 def data_hash(folder: str | Path) -> str:
     """Digest of the two files of a data set, by which a trained network names its data."""
     digest = hashlib.sha256()
