@@ -87,7 +87,7 @@ class SceneBlock:
         return BlockContent(
             finished={scene.scene_id: scene for scene in reversed(scenes)},
             damaged=sum(line != b"" for line in lines) - len(contents),
-            owner=owners[-1] if owners else "another process",
+            owner=owners[-1] if owners else "Another process",
         )
 
     def claim(self) -> bool:
@@ -104,7 +104,7 @@ class SceneBlock:
             size = os.fstat(self._handle).st_size
             if size and os.pread(self._handle, 1, size - 1) != b"\n":
                 self._write(b"\n")
-            self._write(_seal({"owner": f"process {os.getpid()} on {socket.gethostname()}"}))
+            self._write(_seal({"owner": f"Process {os.getpid()} on {socket.gethostname()}"}))
         except BlockingIOError:
             self.release()
             return False

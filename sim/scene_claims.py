@@ -165,7 +165,7 @@ class SceneClaims:
             self._note(content.finished)
             missing = self._missing(block)
             if not claimed:
-                self._tell(f"{block.path.name} belongs to {content.owner}; others are taken meanwhile.")
+                self._tell(f"{content.owner} works on the same scenes; they are shared.")
             elif not missing:
                 block.release()
             else:

@@ -44,7 +44,7 @@ def test_scenes_come_back_to_the_bit(block: SceneBlock) -> None:
     assert sorted(content.finished) == [0, 2, 3]
     assert content.finished[3].scene is None
     assert all(same(content.finished[scene_id], finished_scene(scene_id)) for scene_id in (0, 2))
-    assert (content.damaged, content.owner.split()[:2]) == (0, ["process", str(os.getpid())])
+    assert (content.damaged, content.owner.split()[:2]) == (0, ["Process", str(os.getpid())])
 
 
 def test_wherever_a_file_is_cut_off_its_whole_lines_count(block: SceneBlock) -> None:

@@ -1,6 +1,7 @@
 """Whoever finishes the scenes, the same ones are needed, and none is worked on twice."""
 
 import logging
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -97,7 +98,7 @@ def test_who_has_a_block_is_named(tmp_path: Path, caplog: pytest.LogCaptureFixtu
     with claims_in(tmp_path, block=len(COUNTS)) as one, claims_in(tmp_path, block=len(COUNTS)) as other:
         assert one.next() == 0
         assert other.next() is None
-        assert "belongs to process " in caplog.messages[0]
+        assert f"Process {os.getpid()} on " in caplog.messages[0]
 
 
 def test_too_few_trials_exhaust_the_scenes(tmp_path: Path) -> None:
