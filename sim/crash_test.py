@@ -20,7 +20,8 @@ log = logging.getLogger(__name__)
 def main(cfg: DictConfig) -> None:
     """Kill, damage and start again until there were enough kills, then write how many rows differ."""
     space = instantiate(cfg.robot.grasp_space)
-    settings = CrashSettings(cfg.kills, cfg.seed, cfg.kills_per_table, tuple(cfg.overrides))
+    overrides = tuple(f"collect.{key}={value}" for key, value in cfg.collect.items())
+    settings = CrashSettings(cfg.kills, cfg.seed, cfg.kills_per_table, overrides)
     report = crash_collections(settings, space, Path(HydraConfig.get().runtime.output_dir))
     write_json(cfg.output, provenance(cfg.seed) | asdict(report))
     log.info("%d differing rows after %d kills: %s", report.differing_rows, report.kills, cfg.output)

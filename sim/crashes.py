@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -197,7 +198,9 @@ def _workers(pid: int) -> list[psutil.Process]:
 
 
 def _kill_a_worker(pid: int) -> int:
-    workers = [process for process in _workers(pid) if "spawn_main" in " ".join(process.cmdline())]
-    if workers:
-        workers[0].kill()
-    return min(len(workers), 1)
+    for process in _workers(pid):
+        with suppress(psutil.NoSuchProcess):
+            if "spawn_main" in " ".join(process.cmdline()):
+                process.kill()
+                return 1
+    return 0

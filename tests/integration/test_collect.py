@@ -3,73 +3,107 @@
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
-import pandas as pd
+import psutil
 import pytest
 
 from preshape.data.tables import read_data_set
-from preshape.data.trial_table import THETAS, TrialTable
 from preshape.grasps.space import GraspSpace
 from preshape.paths import project_root
+from sim.crashes import differing_rows
 
-TIMINGS = ["scene_s", "planning_s", "physics_s", "rendering_s"]
+WANTED = ("collect.trials=8", "collect.workers=1", "collect.block=1")
 
 
-def run_collect(place: Path, *overrides: str) -> "subprocess.CompletedProcess[str]":
-    command = [
+def collect_command(place: Path, *overrides: str) -> list[str]:
+    return [
         *(sys.executable, str(project_root() / "sim" / "collect.py")),
         *(f"paths.{name}={place / name}" for name in ("cache", "outputs")),
         f"collect.output={place / 'table'}",
         *overrides,
     ]
+
+
+def run_collect(place: Path, *overrides: str) -> "subprocess.CompletedProcess[str]":
+    command = collect_command(place, *overrides)
     return subprocess.run(command, cwd=place, capture_output=True, text=True, timeout=280, check=False)
 
 
 @pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("undisturbed")
-    done = run_collect(place, "collect.trials=3", "collect.workers=1")
+    done = run_collect(place, *WANTED)
     assert done.returncode == 0, done.stderr
+    assert "starting 1 workers" in done.stdout
     assert str(place / "table") in done.stdout.splitlines()[-1]
     return place
 
 
+def differences(one: Path, other: Path, space: GraspSpace) -> int:
+    tables = [read_data_set(place / "table", space) for place in (one, other)]
+    assert [scene.seed for scene in tables[0][0].scenes] == [scene.seed for scene in tables[1][0].scenes]
+    return differing_rows(tables[0][1], tables[1][1])
+
+
 def test_the_table_holds_what_was_asked_for(undisturbed: Path, allegro_space: GraspSpace) -> None:
     scenes, trials = read_data_set(undisturbed / "table", allegro_space)
-    assert len(trials.executed) >= 3
+    assert len(trials.executed) >= 8
     assert set(trials.scene_ids) <= {scene.scene_id for scene in scenes.scenes}
     assert set(trials.rows["planner"]) == {"heuristic"}
+    assert [path.name for path in (undisturbed / "outputs" / "collect").iterdir()] == ["lbr4_allegro_grocery"]
 
 
-def test_a_killed_run_ends_with_the_table_of_an_undisturbed_one(
+def test_a_killed_and_damaged_run_ends_with_the_table_of_an_undisturbed_one(
+    undisturbed: Path, allegro_space: GraspSpace, tmp_path: Path
+) -> None:
+    with subprocess.Popen(collect_command(tmp_path, *WANTED), cwd=tmp_path) as killed:
+        while not (finished := finished_scenes(tmp_path)) and killed.poll() is None:
+            time.sleep(0.1)
+        workers = psutil.Process(killed.pid).children(recursive=True)
+        killed.kill()
+    assert killed.returncode < 0
+    assert psutil.wait_procs(workers, timeout=10)[1] == []
+    path, content = finished[0]
+    path.write_bytes(content.replace(b'"heuristic"', b'"heretical"', 1))
+    done = run_collect(tmp_path, *WANTED)
+    assert done.returncode == 0, done.stderr
+    assert f"{path}: 1 damaged" in done.stdout
+    assert differences(undisturbed, tmp_path, allegro_space) == 0
+
+
+def finished_scenes(place: Path) -> list[tuple[Path, bytes]]:
+    files = sorted((place / "cache" / "collect").glob("*/*.jsonl"))
+    return [(path, content) for path in files if b'"heuristic"' in (content := path.read_bytes())]
+
+
+def test_shards_end_with_the_table_of_one_process(
+    undisturbed: Path, allegro_space: GraspSpace, tmp_path: Path
+) -> None:
+    done = run_collect(tmp_path, "--multirun", "hydra/launcher=submitit_local", "shard=0,1", *WANTED)
+    assert done.returncode == 0, done.stderr
+    assert differences(undisturbed, tmp_path, allegro_space) == 0
+    owners = {content.split(b"}")[0] for _, content in finished_scenes(tmp_path)}
+    assert len({owner.partition(b" ")[2] for owner in owners}) == 2
+
+
+def test_a_finished_run_only_writes_its_table_again(
     undisturbed: Path, allegro_space: GraspSpace, tmp_path: Path
 ) -> None:
     shutil.copytree(undisturbed / "cache", tmp_path / "cache")
-    (parts,) = (tmp_path / "cache" / "collect").iterdir()
-    finished = sorted(parts.iterdir())
-    (finished[0] / "trials.parquet").unlink()  # as if killed before the scene was complete
-    shutil.rmtree(finished[-1])
-    done = run_collect(tmp_path, "collect.trials=3", "collect.workers=2")
+    done = run_collect(tmp_path, *WANTED)
     assert done.returncode == 0, done.stderr
-    _, before = read_data_set(undisturbed / "table", allegro_space)
-    _, after = read_data_set(tmp_path / "table", allegro_space)
-    assert_same_but_for_time(before, after)
+    for name in ("trials.parquet", "scenes.parquet"):
+        tables = [place / "table" / name for place in (undisturbed, tmp_path)]
+        assert tables[0].read_bytes() == tables[1].read_bytes()
 
 
-def test_a_folder_without_objects_is_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize("launcher", [(), ("--multirun", "hydra/launcher=submitit_local", "shard=0,1")])
+def test_a_folder_without_objects_is_refused(tmp_path: Path, launcher: tuple[str, ...]) -> None:
     (tmp_path / "empty").mkdir()
-    done = run_collect(tmp_path, "objects=mesh_folder", f"objects.root={tmp_path / 'empty'}")
+    done = run_collect(tmp_path, *launcher, "objects=mesh_folder", f"objects.root={tmp_path / 'empty'}")
     assert done.returncode == 2
     assert str(tmp_path / "empty") in done.stderr
     assert "Traceback" not in done.stderr
     assert not (tmp_path / "table").exists()
-
-
-def assert_same_but_for_time(one: TrialTable, other: TrialTable) -> None:
-    """Compare all that a seed decides, to the bit."""
-    pd.testing.assert_frame_equal(
-        one.rows.drop(columns=TIMINGS), other.rows.drop(columns=TIMINGS), check_exact=True
-    )
-    for name in THETAS:
-        assert getattr(one, name).tobytes() == getattr(other, name).tobytes()
