@@ -24,23 +24,24 @@ class ClosingSettings:
         finger_speed_rad_s, thumb_speed_rad_s: closing speeds.
         lead_rad: how far a position target may run ahead of its joint; with the drive's stiffness it sets the
             torque of the grasp, up to the joint's limit.
-        stopped_speed_rad_s: a joint slower than this counts as stopped.
-        stopped_time_s: how long all closing joints of a finger must be stopped until the finger is.
+        stopped_travel_rad, stopped_time_s: a finger has stopped when none of its closing joints has travelled
+            farther than this for so long.
         max_time_s: when to give up waiting for fingers that never stop.
     """
 
-    finger_speed_rad_s: float = 0.6
-    thumb_speed_rad_s: float = 0.75
-    lead_rad: float = 0.15
-    stopped_speed_rad_s: float = 0.04
+    finger_speed_rad_s: float = 1.0
+    thumb_speed_rad_s: float = 1.25
+    lead_rad: float = 0.05
+    stopped_travel_rad: float = 0.02
     stopped_time_s: float = 0.2
-    max_time_s: float = 3.5
+    max_time_s: float = 2.1
 
 
 @dataclass
 class _Finger:
     joints: list[int]
     speed: float
+    still_at: Float[np.ndarray, "_"]
     still_s: float = 0.0
     stopped: bool = False
 
@@ -69,12 +70,15 @@ class ClosingController:
         self.targets = self.preshape.copy()
         finger_rule, thumb_rule = CLOSING_JOINTS[self.grasp_type]
         self._fingers = [
-            _Finger(
-                [joints[k] for k in (thumb_rule if name == THUMB else finger_rule)],
-                self.settings.thumb_speed_rad_s if name == THUMB else self.settings.finger_speed_rad_s,
-            )
+            self._finger(joints, thumb_rule, self.settings.thumb_speed_rad_s)
+            if name == THUMB
+            else self._finger(joints, finger_rule, self.settings.finger_speed_rad_s)
             for name, joints in self.fingers.items()
         ]
+
+    def _finger(self, joints: tuple[int, ...], rule: tuple[int, ...], speed: float) -> _Finger:
+        closing = [joints[k] for k in rule]
+        return _Finger(closing, speed, self.preshape[closing])
 
     @property
     def done(self) -> bool:
@@ -84,15 +88,14 @@ class ClosingController:
     def update(
         self,
         positions: Float[np.ndarray, "16"],
-        velocities: Float[np.ndarray, "16"],
         period_s: float,
     ) -> Float[np.ndarray, "16"]:
-        """Targets for the next control period, from measured joint angles (rad) and velocities (rad/s)."""
+        """Targets for the next control period, from measured joint angles (rad)."""
         self.elapsed_s += period_s
         for finger in self._fingers:
             if not finger.stopped:
                 self._advance(finger, positions, period_s)
-                self._detect_stop(finger, velocities, period_s)
+                self._detect_stop(finger, positions, period_s)
         return self.targets
 
     def _advance(self, finger: _Finger, positions: Float[np.ndarray, "16"], period_s: float) -> None:
@@ -101,7 +104,10 @@ class ClosingController:
         farthest = np.minimum(positions[joints] + self.settings.lead_rad, self.upper[joints])
         self.targets[joints] = np.minimum(wanted, farthest)
 
-    def _detect_stop(self, finger: _Finger, velocities: Float[np.ndarray, "16"], period_s: float) -> None:
-        still = np.all(np.abs(velocities[finger.joints]) < self.settings.stopped_speed_rad_s)
-        finger.still_s = finger.still_s + period_s if still else 0.0
+    def _detect_stop(self, finger: _Finger, positions: Float[np.ndarray, "16"], period_s: float) -> None:
+        angles = positions[finger.joints]
+        if np.any(np.abs(angles - finger.still_at) > self.settings.stopped_travel_rad):
+            finger.still_at, finger.still_s = angles, 0.0
+        else:
+            finger.still_s += period_s
         finger.stopped = finger.still_s >= self.settings.stopped_time_s

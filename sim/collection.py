@@ -11,9 +11,9 @@ from preshape.data.trial import TrialOutcome
 from preshape.errors import InputError
 from sim.finished_scenes import FinishedScene
 from sim.finishing import GuardedRunner, WorkerSettings, finish_scenes
-from sim.heuristic_trials import try_heuristic_grasps
 from sim.laboratory import Laboratory, LaboratoryFactory
 from sim.scene_claims import SceneClaims
+from sim.scene_trials import try_grasps
 from sim.workers import BeginStep, Work
 
 
@@ -119,4 +119,4 @@ def _finish_scene(laboratory: Laboratory, run_seed: int, scene_id: int, begin: B
     if scene is None:
         return FinishedScene(scene_id, None, ())
     guarded = replace(laboratory, runner=GuardedRunner(laboratory.runner, begin))
-    return FinishedScene(scene_id, scene, tuple(try_heuristic_grasps(guarded, run_seed, scene)))
+    return FinishedScene(scene_id, scene, tuple(try_grasps(guarded, run_seed, scene)))

@@ -12,7 +12,7 @@ from typing import Any
 from preshape.checkpoints import load_weights
 from preshape.data.scene import Scene
 from preshape.data.tables import write_data_set
-from preshape.data.trial import Trial
+from preshape.data.trial import Face, Trial
 from preshape.data.trial_table import SceneTable, TableOrigin, TrialTable
 from preshape.errors import InputError
 from preshape.grasps.space import GraspSpace
@@ -23,7 +23,6 @@ from preshape.planning.plan_files import write_plan
 from preshape.planning.view_planner import ViewPlanner
 from sim.finished_scenes import FinishedScene, to_tables
 from sim.finishing import GuardedRunner, WorkerSettings, finish_scenes
-from sim.heuristic_trials import GRASPS_PER_SCENE
 from sim.laboratory import Laboratory, SceneView, trial_seed
 from sim.recorder import Recorder, RecorderSettings
 from sim.scene_claims import SceneClaims
@@ -214,7 +213,7 @@ def _execute(
     trials: list[Trial] = []
     for start in plan.result.ranking.tolist():
         grasp = PlannedGrasp(
-            trial_id=(scene.scene_id * len(evaluator.planners) + number) * GRASPS_PER_SCENE + start,
+            trial_id=(scene.scene_id * len(evaluator.planners) + number) * len(Face) + start,
             planner=plan.planner,
             face=plan.faces[start],
             initial=plan.result.initial_theta[start],

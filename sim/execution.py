@@ -1,6 +1,8 @@
 """Executing one planned grasp: approach, close, lift, hold; and measuring what happened."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -22,12 +24,15 @@ class ExecutionSettings:
         control_period_s: time between two updates of the drives' targets.
         settle_time_s: pause between approach and closing, and again between closing and lifting.
         hold_time_s: how long the hand holds the object up before the trial is judged.
+        lost_lag_m: the trial ends early when the object has stayed so far behind the rising palm, does not
+            rise and is not touched by the hand: it is lost, and the outcome decided. None for never.
         closing: how the hand closes.
     """
 
     control_period_s: float = 1 / 60
-    settle_time_s: float = 0.25
-    hold_time_s: float = 1.0
+    settle_time_s: float = 0.15
+    hold_time_s: float = 0.6
+    lost_lag_m: float | None = 0.05
     closing: ClosingSettings = field(default_factory=ClosingSettings)
 
 
@@ -46,10 +51,22 @@ class Execution:
     measured: Measurements
 
 
+@dataclass(frozen=True)
+class LiftStart:
+    """Heights (m) of the object's centre of mass, at rest, and of the palm that is about to grasp it."""
+
+    object_m: float
+    palm_m: float
+
+
 class Spectator(Protocol):
     """Someone who looks on: is shown the world after every control period."""
 
     def __call__(self, world: World, phase: str) -> None: ...
+
+
+def _never() -> bool:
+    return False
 
 
 class GraspExecutor:
@@ -91,25 +108,41 @@ class GraspExecutor:
         T_world_palm, hand = self._robot.palm_pose, self._robot.hand_positions
         self._close(preshape, grasp_type)
         self._highest_m = -np.inf
-        self._follow(motion.lift, "lift")
-        self._wait(self._settings.hold_time_s, "hold")
-        return Execution(T_world_palm, hand, self._measure(resting_height_m, T_world_palm))
+        start = LiftStart(resting_height_m, float(T_world_palm[2, 3]))
+        is_lost = partial(self._is_lost, start)
+        self._follow(motion.lift, "lift", is_lost)
+        self._wait(self._settings.hold_time_s, "hold", is_lost)
+        return Execution(T_world_palm, hand, self._measure(start))
 
     def _show_transit(self, transit: JointTrajectory, preshape: Float[np.ndarray, "16"]) -> None:
         """Without a spectator nothing happens: a pose that is not stepped leaves no trace in the physics."""
         if self._spectator is not None:
-            for time_s in np.arange(0.0, transit.duration_s, self._period_s):
-                self._robot.place(transit.sample(time_s)[0], preshape)
+            positions, _ = transit.sample(np.arange(0.0, transit.duration_s, self._period_s))
+            for arm in positions:
+                self._robot.place(arm, preshape)
                 self._spectator(self._world, "transit")
 
-    def _follow(self, trajectory: JointTrajectory, phase: str) -> None:
-        for time_s in np.arange(self._period_s, trajectory.duration_s + self._period_s, self._period_s):
-            self._robot.drive_arm(*trajectory.sample(time_s))
+    def _follow(self, trajectory: JointTrajectory, phase: str, is_over: Callable[[], bool] = _never) -> None:
+        times = np.arange(self._period_s, trajectory.duration_s + self._period_s, self._period_s)
+        for positions, velocities in zip(*trajectory.sample(times), strict=True):
+            self._robot.drive_arm(positions, velocities)
             self._advance(phase)
+            if is_over():
+                return
 
-    def _wait(self, duration_s: float, phase: str) -> None:
+    def _wait(self, duration_s: float, phase: str, is_over: Callable[[], bool] = _never) -> None:
         for _ in range(round(duration_s / self._period_s)):
             self._advance(phase)
+            if is_over():
+                return
+
+    def _is_lost(self, start: LiftStart) -> bool:
+        """Whether nothing that may still happen changes the outcome; contacts, which cost most, come last."""
+        limit, world = self._settings.lost_lag_m, self._world
+        if limit is None:
+            return False
+        lag_m = self._robot.palm_height_m - start.palm_m - (world.object_height_m - start.object_m)
+        return lag_m > limit and world.object_velocity[2] <= 0 and not world.object_touches_hand
 
     def _close(self, preshape: Float[np.ndarray, "16"], grasp_type: GraspType) -> None:
         robot = self._robot
@@ -117,7 +150,7 @@ class GraspExecutor:
             robot.fingers, grasp_type, preshape, robot.robot.hand_upper_limits, self._settings.closing
         )
         while not controller.done:
-            robot.drive_hand(controller.update(robot.hand_positions, robot.hand_velocities, self._period_s))
+            robot.drive_hand(controller.update(robot.hand_positions, self._period_s))
             self._advance("close")
         self._wait(self._settings.settle_time_s, "close")
 
@@ -128,12 +161,12 @@ class GraspExecutor:
         if self._spectator is not None:
             self._spectator(self._world, phase)
 
-    def _measure(self, resting_height_m: float, T_world_palm: Float[np.ndarray, "4 4"]) -> Measurements:
+    def _measure(self, start: LiftStart) -> Measurements:
         world = self._world
         return Measurements(
-            final_height_m=world.object_height_m - resting_height_m,
-            highest_m=self._highest_m - resting_height_m,
-            palm_rise_m=float(self._robot.palm_pose[2, 3] - T_world_palm[2, 3]),
+            final_height_m=world.object_height_m - start.object_m,
+            highest_m=self._highest_m - start.object_m,
+            palm_rise_m=self._robot.palm_height_m - start.palm_m,
             relative_speed_m_s=float(np.linalg.norm(world.object_velocity - self._robot.palm_velocity)),
             touches_hand=world.object_touches_hand,
             touches_support=world.object_touches_support,

@@ -7,7 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from preshape.data.scene import Scene, SceneRenderer
+from preshape.data.trial import Face
 from preshape.data.trial_table import TableOrigin
+from preshape.grasps.exploration import ExplorationSettings, explored_grasps
 from preshape.grasps.heuristic import HeuristicSettings, InitialGrasp, heuristic_grasps
 from preshape.grasps.space import GraspSpace
 from preshape.perception.observation import Observation
@@ -42,6 +44,7 @@ class Laboratory:
         renderer: makes their images.
         segmentation, heuristic: how the robot finds the object and its initial grasps.
         runner: tries grasps.
+        exploration: how far collected grasps stray from the heuristic ones.
     """
 
     origin: TableOrigin
@@ -51,6 +54,7 @@ class Laboratory:
     heuristic: HeuristicSettings
     runner: TrialRunner
     segmentation: SegmentationSettings = field(default_factory=SegmentationSettings)
+    exploration: ExplorationSettings = field(default_factory=ExplorationSettings)
 
     def view(self, scene: Scene) -> SceneView:
         """Look at a scene; the same scene gives the same view.
@@ -64,9 +68,21 @@ class Laboratory:
         grasps = heuristic_grasps(segmented, self.space, self.heuristic, scene.camera, rng)
         return SceneView(observation, segmented, tuple(grasps))
 
+    def explored(self, scene: Scene, view: SceneView) -> list[InitialGrasp]:
+        """Grasps that stray from the heuristic ones; the same scene gives the same grasps."""
+        rng = np.random.default_rng([scene.seed, EXPLORATION_STREAM])
+        return explored_grasps(
+            view.segmented, self.space, self.heuristic, self.exploration, scene.camera, rng
+        )
 
-GRASP_STREAM = 1
-"""Keeps the random numbers of initial grasps apart from the sensor's, which start from the same seed."""
+    @property
+    def grasps_per_scene(self) -> int:
+        """Most grasps that collecting tries on a scene."""
+        return len(Face) * (1 + self.exploration.grasps_per_face)
+
+
+GRASP_STREAM, EXPLORATION_STREAM = 1, 2
+"""Keep the random numbers of grasps apart from the sensor's, which start from the same seed."""
 
 LaboratoryFactory = Callable[[], Laboratory]
 """Builds the laboratory; each worker process builds its own."""

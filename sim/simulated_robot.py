@@ -43,6 +43,7 @@ class SimulatedRobot:
             joints[k].set_drive_properties(robot.arm_stiffness, robot.arm_damping, torque)
         for k in self._hand:
             joints[k].set_drive_properties(robot.hand_stiffness, robot.hand_damping, robot.hand_torque_limit)
+            joints[k].set_armature(np.full(1, robot.hand_armature, np.float32))
         # The real controllers compensate gravity; without it position drives need no integral part.
         for link in self.articulation.links:
             link.disable_gravity = True
@@ -81,14 +82,14 @@ class SimulatedRobot:
         return self.articulation.qpos[self._hand].astype(np.float64)
 
     @property
-    def hand_velocities(self) -> Float[np.ndarray, "16"]:
-        """Measured joint velocities of the hand (rad/s)."""
-        return self.articulation.qvel[self._hand].astype(np.float64)
-
-    @property
     def palm_pose(self) -> Float[np.ndarray, "4 4"]:
         """T_world_palm as it is now."""
         return self._palm.entity_pose.to_transformation_matrix().astype(np.float64) @ self.robot.T_link_palm
+
+    @property
+    def palm_height_m(self) -> float:
+        """Height of the palm frame's origin over the floor as it is now."""
+        return float(self.palm_pose[2, 3])
 
     @property
     def palm_velocity(self) -> Float[np.ndarray, "3"]:

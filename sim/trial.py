@@ -1,14 +1,15 @@
 """A trial from its planned grasp to its label."""
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Float
+from scipy.spatial.transform import Rotation
 
 from preshape.data.scene import Scene
 from preshape.data.trial import Face, Trial, TrialOutcome
-from preshape.geometry.pose import invert_pose, transform_points
+from preshape.geometry.pose import invert_pose, make_pose, transform_points
 from sim.arm.planner import ArmPlanner
 from sim.arm.trajectory import GraspMotion, MotionFailure
 from sim.execution import Execution, ExecutionSettings, GraspExecutor, Spectator
@@ -18,6 +19,9 @@ from sim.physics import PhysicsSettings
 from sim.robots.description import RobotDescription
 from sim.table import TableSettings
 from sim.world import World
+
+DISTURBANCE_STREAM = 2
+"""Keeps the random numbers of the repetitions apart from those of the motion's planning, of the same seed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,12 +49,30 @@ class PlannedGrasp:
 
 
 @dataclass(frozen=True)
+class DisturbanceSettings:
+    """Repetitions of a trial with the object a little beside where the robot believes it to be.
+
+    The share of them that ends LIFTED is the trial's soft label: how sure the grasp is.
+
+    Args:
+        repeats: number of repetitions; 0 for no soft label.
+        position_m: standard deviation of the object's shift along both horizontal axes.
+        yaw_rad: standard deviation of its turn about the vertical.
+    """
+
+    repeats: int = 0
+    position_m: float = 0.003
+    yaw_rad: float = 0.03
+
+
+@dataclass(frozen=True)
 class TrialSettings:
-    """Everything that decides a trial's label beside the grasp."""
+    """Everything that decides a trial's labels beside the grasp."""
 
     physics: PhysicsSettings = field(default_factory=PhysicsSettings)
     execution: ExecutionSettings = field(default_factory=ExecutionSettings)
     outcome: OutcomeSettings = field(default_factory=OutcomeSettings)
+    disturbances: DisturbanceSettings = field(default_factory=DisturbanceSettings)
 
 
 class TrialRunner:
@@ -83,17 +105,14 @@ class TrialRunner:
         planned = time.perf_counter()
         if isinstance(motion, MotionFailure):
             return self._row(scene, grasp, motion.outcome, None, planning_s=planned - start)
-        world = World(
-            self._table, self._settings.physics, model, scene.T_world_object, rendered=spectator is not None
-        ).with_robot(self._robot)
+        world = self._world(model, scene.T_world_object, rendered=spectator is not None)
         built = time.perf_counter()
-        executor = GraspExecutor(world, self._settings.physics, self._settings.execution, spectator)
-        preshape = self._robot.preshape(self._space.joints(grasp.planned))
-        execution = executor.execute(motion, preshape, grasp.face.grasp_type)
+        execution = self._execute(world, motion, grasp, spectator)
         done = time.perf_counter()
         outcome = judge(execution.measured, self._settings.outcome)
         times = {"planning_s": planned - start, "scene_s": built - planned, "physics_s": done - built}
-        return self._row(scene, grasp, outcome, execution, **times)
+        trial = self._row(scene, grasp, outcome, execution, **times)
+        return replace(trial, soft_label=self._soft_label(scene, grasp, motion, model))
 
     def plan_motion(
         self, scene: Scene, grasp: PlannedGrasp, model: ObjectModel
@@ -103,6 +122,31 @@ class TrialRunner:
         parts = tuple(transform_points(scene.T_world_object, part) for part in model.collision_parts)
         preshape = self._robot.preshape(self._space.joints(grasp.planned))
         return self._arm.plan_grasp(T_world_palm, preshape, parts, np.random.default_rng(grasp.seed))
+
+    def _world(self, model: ObjectModel, pose: Float[np.ndarray, "4 4"], *, rendered: bool = False) -> World:
+        return World(self._table, self._settings.physics, model, pose, rendered=rendered).with_robot(
+            self._robot
+        )
+
+    def _execute(
+        self, world: World, motion: GraspMotion, grasp: PlannedGrasp, spectator: Spectator | None = None
+    ) -> Execution:
+        executor = GraspExecutor(world, self._settings.physics, self._settings.execution, spectator)
+        preshape = self._robot.preshape(self._space.joints(grasp.planned))
+        return executor.execute(motion, preshape, grasp.face.grasp_type)
+
+    def _soft_label(
+        self, scene: Scene, grasp: PlannedGrasp, motion: GraspMotion, model: ObjectModel
+    ) -> float:
+        """Share of the repetitions that end LIFTED; NaN if there are none."""
+        settings = self._settings.disturbances
+        rng = np.random.default_rng([grasp.seed, DISTURBANCE_STREAM])
+        lifted = []
+        for _ in range(settings.repeats):
+            pose = _disturbed(scene.T_world_object, settings, rng)
+            execution = self._execute(self._world(model, pose), motion, grasp)
+            lifted.append(judge(execution.measured, self._settings.outcome) is TrialOutcome.LIFTED)
+        return float(np.mean(lifted)) if lifted else float("nan")
 
     def _row(
         self,
@@ -139,3 +183,12 @@ class TrialRunner:
             return np.full(self._space.dim, np.nan)
         T_camera_palm = invert_pose(scene.camera.T_world_camera) @ execution.T_world_palm
         return self._space.theta(T_camera_palm, self._robot.preshape_joints(execution.hand))
+
+
+def _disturbed(
+    pose: Float[np.ndarray, "4 4"], settings: DisturbanceSettings, rng: np.random.Generator
+) -> Float[np.ndarray, "4 4"]:
+    """The pose shifted and turned on the table about the object's own origin."""
+    turn = Rotation.from_euler("z", rng.normal(0.0, settings.yaw_rad)).as_matrix()
+    shift = np.append(rng.normal(0.0, settings.position_m, size=2), 0.0)
+    return make_pose(turn @ pose[:3, :3], pose[:3, 3] + shift)

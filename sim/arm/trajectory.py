@@ -31,13 +31,14 @@ class JointTrajectory:
         """Seconds from the first sample to the last."""
         return float(self.times[-1])
 
-    def sample(self, time_s: float) -> tuple[Float[np.ndarray, "a"], Float[np.ndarray, "a"]]:
-        """Joint angles (rad) and velocities (rad/s) at a time; before and after it, the arm rests."""
-        if time_s >= self.duration_s:
-            return self.positions[-1], np.zeros_like(self.positions[-1])
+    def sample(
+        self, times_s: Float[np.ndarray, "t"]
+    ) -> tuple[Float[np.ndarray, "t a"], Float[np.ndarray, "t a"]]:
+        """Joint angles (rad) and velocities (rad/s) at some times; outside of the motion, the arm rests."""
         position, velocity = self._splines
-        clipped = max(time_s, 0.0)
-        return position(clipped), velocity(clipped)
+        clipped = np.clip(times_s, 0.0, self.duration_s)
+        moves = (times_s >= 0) & (times_s < self.duration_s)
+        return position(clipped), np.where(moves[:, None], velocity(clipped), 0.0)
 
     def spaced_positions(self, spacing_rad: float) -> Float[np.ndarray, "m a"]:
         """Joint angles (rad) along the motion, including both ends, about `spacing_rad` from each other."""

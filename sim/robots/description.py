@@ -27,6 +27,7 @@ class RobotSettings:
         arm_stiffness, arm_damping: drive gains of the arm (Nm/rad, Nm s/rad).
         hand_stiffness, hand_damping: drive gains of the hand (Nm/rad, Nm s/rad).
         hand_torque_limit: largest torque of a finger joint (Nm).
+        hand_armature: inertia that its motor adds to each finger joint (kg m^2).
     """
 
     name: str
@@ -43,6 +44,7 @@ class RobotSettings:
     hand_stiffness: float
     hand_damping: float
     hand_torque_limit: float
+    hand_armature: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +73,7 @@ class RobotDescription:
         arm_velocities, arm_accelerations: the arm's largest speeds (rad/s) and accelerations (rad/s^2).
         arm_torque_limits, hand_torque_limit: largest torques (Nm): per arm joint, and of any finger joint.
         arm_stiffness, arm_damping, hand_stiffness, hand_damping: drive gains (Nm/rad, Nm s/rad).
+        hand_armature: inertia that its motor adds to each finger joint (kg m^2).
     """
 
     name: str
@@ -102,6 +105,7 @@ class RobotDescription:
     arm_damping: float
     hand_stiffness: float
     hand_damping: float
+    hand_armature: float
 
     def preshape(self, joints: Float[np.ndarray, "j"]) -> Float[np.ndarray, "h"]:
         """All joint angles of the hand (rad) for the preshape joints of theta; the others are zero.

@@ -178,6 +178,7 @@ def _describe(
         arm_damping=settings.arm_damping,
         hand_stiffness=settings.hand_stiffness,
         hand_damping=settings.hand_damping,
+        hand_armature=settings.hand_armature,
     )
 
 

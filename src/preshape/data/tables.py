@@ -33,7 +33,7 @@ from preshape.grasps.space import GraspSpace
 
 COLLECT = "python sim/collect.py"
 SCENES = TableFormat("scenes", version=1, maker=COLLECT)
-TRIALS = TableFormat("trials", version=1, maker=COLLECT)
+TRIALS = TableFormat("trials", version=2, maker=COLLECT)
 SCENES_FILE, TRIALS_FILE = "scenes.parquet", "trials.parquet"
 
 CAMERA_COLUMNS = {

@@ -65,6 +65,7 @@ class Trial:
         success_prob: what the planner predicted for `planned`; NaN if it predicted nothing.
         seed: seed of everything random in the trial.
         scene_s, planning_s, physics_s, rendering_s: wall-clock seconds of each part.
+        soft_label: share of LIFTED among repetitions under small disturbances; NaN if it was not repeated.
     """
 
     trial_id: int
@@ -83,3 +84,4 @@ class Trial:
     planning_s: float
     physics_s: float
     rendering_s: float
+    soft_label: float = float("nan")

@@ -65,8 +65,7 @@ def motion(planner: ArmPlanner, robot: RobotDescription, query: tuple[np.ndarray
 def finely(trajectory: JointTrajectory) -> tuple[np.ndarray, np.ndarray]:
     """Joint angles and velocities every 2 ms."""
     times = np.arange(0.0, trajectory.duration_s, 0.002)
-    positions, velocities = zip(*(trajectory.sample(float(time)) for time in times), strict=True)
-    return np.array(positions), np.array(velocities)
+    return trajectory.sample(times)
 
 
 def parts_of(motion: GraspMotion) -> tuple[JointTrajectory, JointTrajectory, JointTrajectory]:

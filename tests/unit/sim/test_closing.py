@@ -21,7 +21,7 @@ def controller(grasp_type: GraspType) -> ClosingController:
 )
 def test_only_the_joints_of_the_rule_close(grasp_type: GraspType, closing: set[int]) -> None:
     hand = controller(grasp_type)
-    targets = hand.update(np.zeros(16), np.zeros(16), PERIOD_S)
+    targets = hand.update(np.zeros(16), PERIOD_S)
     assert set(np.flatnonzero(targets)) == closing
 
 
@@ -30,7 +30,7 @@ def test_free_fingers_close_at_constant_speed_up_to_their_limits() -> None:
     positions, before = np.zeros(16), np.zeros(16)
     while not hand.done:
         speeds = (positions - before) / PERIOD_S
-        before, positions = positions, hand.update(positions, speeds, PERIOD_S).copy()
+        before, positions = positions, hand.update(positions, PERIOD_S).copy()
         assert np.all(speeds <= SETTINGS.thumb_speed_rad_s + 1e-9)
     assert hand.elapsed_s == pytest.approx(1.6 / SETTINGS.finger_speed_rad_s, abs=0.5)
     assert np.all(positions <= 1.6)
@@ -39,18 +39,26 @@ def test_free_fingers_close_at_constant_speed_up_to_their_limits() -> None:
 def test_a_blocked_finger_stops_and_the_others_go_on() -> None:
     hand = controller(GraspType.SIDE)
     positions = np.zeros(16)
-    before = positions
     for _ in range(60):
-        velocities = (positions - before) / PERIOD_S
-        before, positions = positions, hand.update(positions, velocities, PERIOD_S).copy()
+        positions = hand.update(positions, PERIOD_S).copy()
         positions[[1, 2, 3]] = np.minimum(positions[[1, 2, 3]], 0.1)
     assert np.all(hand.targets[[1, 2, 3]] <= 0.1 + SETTINGS.lead_rad + 1e-12)
     assert hand.targets[5] > hand.targets[1]
     assert not hand.done
 
 
+def test_a_finger_that_trembles_in_one_place_has_stopped() -> None:
+    hand = controller(GraspType.SIDE)
+    tremble = SETTINGS.stopped_travel_rad / 3
+    for k in range(round(SETTINGS.stopped_time_s / PERIOD_S) + 2):
+        hand.update(np.full(16, tremble * (-1) ** k), PERIOD_S)
+    assert hand.done
+
+
 def test_a_finger_that_never_stops_does_not_hold_the_trial_up() -> None:
     hand = controller(GraspType.SIDE)
+    positions = np.zeros(16)
     while not hand.done:
-        hand.update(np.zeros(16), np.ones(16), PERIOD_S)
+        positions = positions + 1.2 * PERIOD_S
+        hand.update(positions, PERIOD_S)
     assert hand.elapsed_s == pytest.approx(SETTINGS.max_time_s, abs=2 * PERIOD_S)
