@@ -15,7 +15,6 @@ from preshape.drawing.channel_grid import channel_grid
 from preshape.drawing.grasp_overlay import grasp_overlay
 from preshape.drawing.grasp_window import cut, grasp_window
 from preshape.hands.kinematics import HandKinematics
-from preshape.perception.image import eight_channel_image
 from preshape.perception.observation import Observation
 from preshape.perception.patch import object_centre, object_patch
 from preshape.perception.segmentation import SegmentationSettings, segment
@@ -152,4 +151,4 @@ def _drawn(
 def _patch(observation: Observation) -> np.ndarray:
     """The patch around the object that the network sees."""
     centre = object_centre(segment(observation, SegmentationSettings()), observation.camera)
-    return object_patch(eight_channel_image(observation), centre)
+    return object_patch(observation, centre)

@@ -39,9 +39,14 @@ def add_camera(scene: sapien.Scene, camera: Camera) -> RenderCameraComponent:
     entity = sapien.Entity()
     entity.set_name("camera")
     entity.add_component(lens)
-    entity.set_pose(sapien_pose(camera.T_world_camera @ T_OPTICAL_SAPIEN))
+    place_camera(lens, camera)
     scene.add_entity(entity)
     return lens
+
+
+def place_camera(lens: RenderCameraComponent, camera: Camera) -> None:
+    """Put a camera that is in a scene where `camera` stands; their intrinsics must be the same."""
+    lens.entity.set_pose(sapien_pose(camera.T_world_camera @ T_OPTICAL_SAPIEN))
 
 
 def take_colour(scene: sapien.Scene, lens: RenderCameraComponent) -> UInt8[np.ndarray, "h w 3"]:

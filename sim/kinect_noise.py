@@ -11,7 +11,7 @@ reconstruction and tracking", 3DIMPVT 2012). What the projector cannot see stays
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Float32
+from jaxtyping import Bool, Float, Float32, Int
 from scipy.ndimage import gaussian_filter
 
 from preshape.geometry.camera import Camera
@@ -50,28 +50,39 @@ class KinectNoise:
     ) -> Float32[np.ndarray, "h w"]:
         """The measured depth (m, NaN in holes) for a true depth (m, NaN where there is nothing)."""
         incidence = incidence_angles(depth, camera)
-        seen = ~self._shadow(depth, camera) & (rng.random(depth.shape) >= self._loss(incidence))
+        lost = self._shadow(depth, camera) | self._missed(incidence, rng)
         source = self._ragged(depth.shape, rng)
-        true = depth[source].astype(np.float64)
+        true = depth.take(source).astype(np.float64)
         disparity = self.disparity_m / true + self.disparity_sigma * self._correlated(depth.shape, rng)
         measured = self.disparity_m / np.maximum(np.rint(disparity), 1)
-        measured += self._grazing_sigma(incidence[source], true) * rng.standard_normal(depth.shape)
+        self._add_grazing_noise(measured, incidence.take(source), true, rng)
         in_range = (measured >= self.nearest_m) & (measured <= self.farthest_m)
-        return np.where(seen & seen[source] & in_range, measured, np.nan).astype(np.float32)
+        return np.where(in_range & ~(lost | lost.take(source)), measured, np.nan).astype(np.float32)
 
-    def _loss(self, incidence: Float32[np.ndarray, "h w"]) -> Float[np.ndarray, "h w"]:
-        """Probability that a pixel is lost, by its incidence (rad); 1 where there is no surface."""
+    def _missed(
+        self, incidence: Float32[np.ndarray, "h w"], rng: np.random.Generator
+    ) -> Bool[np.ndarray, "h w"]:
+        """Pixels without a surface, and those lost at random because light grazes their surface."""
         onset = np.deg2rad(self.grazing_hole_deg)
-        loss = np.clip((incidence - onset) / (np.pi / 2 - onset), 0, 1)
-        return np.where(np.isnan(loss), 1.0, loss)
+        missed = np.isnan(incidence)
+        luck = rng.random(incidence.shape)
+        steep = incidence > onset
+        missed[steep] = luck[steep] < (incidence[steep] - onset) / (np.pi / 2 - onset)
+        return missed
 
-    def _grazing_sigma(
-        self, incidence: Float32[np.ndarray, "h w"], depth: Float[np.ndarray, "h w"]
-    ) -> Float[np.ndarray, "h w"]:
-        """Nguyen et al., equation for incidence above 60 degrees (m)."""
-        steep = np.clip(incidence, 0, np.deg2rad(self.grazing_hole_deg))
-        sigma = self.grazing_sigma_m * steep**2 / ((np.pi / 2 - steep) ** 2 * np.sqrt(depth))
-        return np.where(steep > np.pi / 3, sigma, 0.0)
+    def _add_grazing_noise(
+        self,
+        measured: Float[np.ndarray, "h w"],
+        incidence: Float32[np.ndarray, "h w"],
+        depth: Float[np.ndarray, "h w"],
+        rng: np.random.Generator,
+    ) -> None:
+        """Add the noise of steep incidence: Nguyen et al.'s equation for more than 60 degrees."""
+        noise = rng.standard_normal(measured.shape)
+        steep = incidence > np.deg2rad(60.0)
+        angle = np.minimum(incidence[steep], np.deg2rad(self.grazing_hole_deg))
+        sigma = self.grazing_sigma_m * angle**2 / ((np.pi / 2 - angle) ** 2 * np.sqrt(depth[steep]))
+        measured[steep] += sigma * noise[steep]
 
     def _shadow(self, depth: Float32[np.ndarray, "h w"], camera: Camera) -> Bool[np.ndarray, "h w"]:
         """Where the projector's light does not reach.
@@ -80,17 +91,18 @@ class KinectNoise:
         the image, takes the same light.
         """
         columns = np.arange(depth.shape[1]) - camera.fx * self.baseline_m / depth
-        columns = np.where(np.isnan(columns), np.inf, columns)
+        columns[np.isnan(columns)] = np.inf
         lowest_on_the_right = np.minimum.accumulate(columns[:, ::-1], axis=1)[:, ::-1]
         shadow = np.zeros(depth.shape, bool)
         shadow[:, :-1] = columns[:, :-1] > lowest_on_the_right[:, 1:]
         return shadow
 
-    def _ragged(self, shape: tuple[int, int], rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-        """Row and column of the pixel that each pixel really measures."""
-        shift = np.rint(self.lateral_sigma_px * rng.standard_normal((2, *shape))).astype(int)
-        row, column = np.indices(shape) + shift
-        return np.clip(row, 0, shape[0] - 1), np.clip(column, 0, shape[1] - 1)
+    def _ragged(self, shape: tuple[int, int], rng: np.random.Generator) -> Int[np.ndarray, "h w"]:
+        """Number of the pixel, in a flat image, that each pixel really measures."""
+        shift = np.rint(self.lateral_sigma_px * rng.standard_normal((2, *shape))).astype(np.intp)
+        row = np.clip(np.arange(shape[0])[:, None] + shift[0], 0, shape[0] - 1)
+        column = np.clip(np.arange(shape[1]) + shift[1], 0, shape[1] - 1)
+        return row * shape[1] + column
 
     def _correlated(self, shape: tuple[int, int], rng: np.random.Generator) -> Float[np.ndarray, "h w"]:
         """Standard normal noise that neighbours share."""
@@ -105,8 +117,7 @@ class KinectNoise:
 def incidence_angles(depth: Float32[np.ndarray, "h w"], camera: Camera) -> Float32[np.ndarray, "h w"]:
     """Angle (rad) between the line of sight and the surface's normal; near 90 degrees at depth edges."""
     rise_v, rise_u = np.gradient(depth)
-    x = ((np.arange(camera.width) - camera.cx) / camera.fx).astype(np.float32)[None, :]
-    y = ((np.arange(camera.height) - camera.cy) / camera.fy).astype(np.float32)[:, None]
+    x, y = camera.rays(np.float32)
     slope_u, slope_v = camera.fx * rise_u, camera.fy * rise_v
     # The cross product of the surface's tangents along u and v, scaled so that its dot product with the
     # line of sight (x, y, 1) is the depth.

@@ -7,10 +7,12 @@ from functools import cached_property
 import numpy as np
 import sapien
 from sapien.physx import PhysxCpuSystem
+from sapien.render import RenderCameraComponent
 
 from preshape.data.scene import Scene
+from preshape.geometry.camera import Camera
 from preshape.perception.observation import Observation
-from sim.camera import add_camera, colour, depth, segmentation, take_picture
+from sim.camera import add_camera, colour, depth, place_camera, segmentation, take_picture
 from sim.kinect_noise import KinectNoise
 from sim.objects.actor import add_object
 from sim.objects.object_model import ObjectSet
@@ -60,16 +62,21 @@ class SapienSceneRenderer:
         Raises:
             InputError: if the object is not in the set, or the machine cannot render.
         """
-        stage, target = self._build(scene)
-        lens = add_camera(stage, scene.camera)
-        take_picture(stage, lens)
-        measured = depth(lens)
+        model = self.objects.load(scene.object_id)
+        lens = self._lens(scene.camera)
+        target = add_object(self._stage, model, scene.T_world_object)
+        try:
+            take_picture(self._stage, lens)
+            rgb, measured, mask = colour(lens), depth(lens), segmentation(lens) == target.per_scene_id
+        finally:
+            self._stage.remove_entity(target)
         if self.noise is not None:
             measured = self.noise(measured, scene.camera, np.random.default_rng([scene.seed, NOISE_STREAM]))
-        return Observation(colour(lens), measured, segmentation(lens) == target.per_scene_id, scene.camera)
+        return Observation(rgb, measured, mask, scene.camera)
 
-    def _build(self, scene: Scene) -> tuple[sapien.Scene, sapien.Entity]:
-        """A fresh stage, never stepped, and the object in it."""
+    @cached_property
+    def _stage(self) -> sapien.Scene:
+        """What all scenes share, never stepped. It stays, because building it costs more than an object."""
         # Links of a robot find their places by physics only, bodies would merely cost time.
         if self.robot is None:
             stage = sapien.Scene([make_render_system()])
@@ -77,4 +84,17 @@ class SapienSceneRenderer:
             stage = sapien.Scene([PhysxCpuSystem(), make_render_system()])
             SimulatedRobot(stage, self.robot).place(self.robot.arm_home, self.robot.hand_open)
         build_table(stage, self.table)
-        return stage, add_object(stage, self.objects.load(scene.object_id), scene.T_world_object)
+        return stage
+
+    @cached_property
+    def _lenses(self) -> dict[tuple[float, ...], RenderCameraComponent]:
+        """Cameras of the stage by their intrinsics."""
+        return {}
+
+    def _lens(self, camera: Camera) -> RenderCameraComponent:
+        intrinsics = (camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy)
+        lens = self._lenses.get(intrinsics)
+        if lens is None:
+            lens = self._lenses[intrinsics] = add_camera(self._stage, camera)
+        place_camera(lens, camera)
+        return lens

@@ -34,10 +34,18 @@ class Camera:
         x, y, z = points[..., 0], points[..., 1], points[..., 2]
         return self.fx * x / z + self.cx, self.fy * y / z + self.cy
 
+    def rays(self, dtype: Any = np.float64) -> tuple[Float[np.ndarray, "1 w"], Float[np.ndarray, "h 1"]]:
+        """x of each column and y of each row of the image at depth 1 (m)."""
+        x = (np.arange(self.width) - self.cx) / self.fx
+        y = (np.arange(self.height) - self.cy) / self.fy
+        return x.astype(dtype)[None, :], y.astype(dtype)[:, None]
+
     def unproject(self, depth: Float[np.ndarray, "h w"]) -> Float[np.ndarray, "h w 3"]:
         """Organised points in the camera frame (m) of a depth image (m, along z); NaN stays NaN."""
-        v, u = np.indices(depth.shape, dtype=depth.dtype)
-        return np.stack(((u - self.cx) / self.fx * depth, (v - self.cy) / self.fy * depth, depth), axis=-1)
+        x, y = self.rays(depth.dtype)
+        points = np.empty((*depth.shape, 3), dtype=depth.dtype)
+        points[..., 0], points[..., 1], points[..., 2] = x * depth, y * depth, depth
+        return points
 
     @classmethod
     def looking_at(

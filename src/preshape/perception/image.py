@@ -14,7 +14,11 @@ def eight_channel_image(observation: Observation) -> Float32[np.ndarray, "8 h w"
 
     Depth, normals and curvature are 0 where they are unknown.
     """
+    image = np.empty((len(CHANNEL_NAMES), *observation.depth.shape), dtype=np.float32)
     normals, curvature = normals_and_curvature(observation)
-    colour = observation.rgb.astype(np.float32) / 255
-    channels = np.dstack((colour, observation.depth, normals, curvature))
-    return np.asarray(np.nan_to_num(np.ascontiguousarray(np.moveaxis(channels, -1, 0))))
+    image[:3] = np.moveaxis(observation.rgb, -1, 0)
+    image[:3] /= 255
+    image[3], image[4:7], image[7] = observation.depth, np.moveaxis(normals, -1, 0), curvature
+    surface = image[3:]
+    surface[np.isnan(surface)] = 0
+    return image

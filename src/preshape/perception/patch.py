@@ -1,10 +1,18 @@
-"""Patches: fixed-size crops of the image around a pixel (paper, section 3.1)."""
+"""Patches: fixed-size crops of the 8-channel image around a pixel (paper, section 3.1)."""
+
+from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Float32
 
 from preshape.geometry.camera import Camera
+from preshape.perception.image import CHANNEL_NAMES, eight_channel_image
+from preshape.perception.observation import Observation
 from preshape.perception.segmentation import SegmentedObject
+from preshape.perception.surface import REACH_PX
+
+PATCH_SIZE = 400
+"""Width and height of an object patch in pixels."""
 
 
 def object_centre(segmented: SegmentedObject, camera: Camera) -> tuple[float, float]:
@@ -14,21 +22,36 @@ def object_centre(segmented: SegmentedObject, camera: Camera) -> tuple[float, fl
 
 
 def object_patch(
-    image: Float32[np.ndarray, "c h w"], centre: tuple[float, float], size: int = 400
-) -> Float32[np.ndarray, "c size size"]:
-    """Square crop of an image around a pixel, without resizing; 0 outside of the image.
+    observation: Observation, centre: tuple[float, float], size: int = PATCH_SIZE
+) -> Float32[np.ndarray, "8 size size"]:
+    """Square crop of the 8-channel image around a pixel, without resizing; 0 outside of the view.
 
     Args:
-        image: channels first.
+        observation: the view.
         centre: pixel coordinates (u, v); the nearest pixel lands at (size // 2, size // 2) of the patch.
         size: side of the patch in pixels.
     """
-    patch = np.zeros((image.shape[0], size, size), dtype=np.float32)
-    left, top = (round(coordinate) - size // 2 for coordinate in centre)
-    height, width = image.shape[1:]
-    rows = slice(np.clip(top, 0, height), np.clip(top + size, 0, height))
-    columns = slice(np.clip(left, 0, width), np.clip(left + size, 0, width))
-    crop = image[:, rows, columns]
-    row, column = max(0, -top), max(0, -left)
-    patch[:, row : row + crop.shape[1], column : column + crop.shape[2]] = crop
-    return patch
+    # The channels cost time, so they are made for the patch alone, and for what its outermost pixels look at.
+    wide = np.zeros((len(CHANNEL_NAMES), size + 2 * REACH_PX, size + 2 * REACH_PX), dtype=np.float32)
+    left, top = (round(coordinate) - size // 2 - REACH_PX for coordinate in centre)
+    height, width = observation.depth.shape
+    rows = slice(*np.clip((top, top + wide.shape[1]), 0, height).tolist())
+    columns = slice(*np.clip((left, left + wide.shape[2]), 0, width).tolist())
+    if rows.start < rows.stop and columns.start < columns.stop:
+        seen = np.s_[:, rows.start - top : rows.stop - top, columns.start - left : columns.stop - left]
+        wide[seen] = eight_channel_image(_window(observation, rows, columns))
+    return np.ascontiguousarray(wide[:, REACH_PX:-REACH_PX, REACH_PX:-REACH_PX])
+
+
+def _window(observation: Observation, rows: slice, columns: slice) -> Observation:
+    """Some rows and columns of a view as a view of their own."""
+    camera = observation.camera
+    cut = replace(
+        camera,
+        width=columns.stop - columns.start,
+        height=rows.stop - rows.start,
+        cx=camera.cx - columns.start,
+        cy=camera.cy - rows.start,
+    )
+    mask = None if observation.mask is None else observation.mask[rows, columns]
+    return Observation(observation.rgb[rows, columns], observation.depth[rows, columns], mask, cut)

@@ -3,13 +3,20 @@
 import numpy as np
 from jaxtyping import Float, Float32
 
+from preshape.geometry.camera import Camera
 from preshape.perception.observation import Observation
 
 REACH_PX = 6
 STEP_PX = 2
 MIN_NEIGHBOURS = 12
 MAX_JUMP = 0.02
-STRIP_ROWS = 16
+STRIP_ROWS = 6
+"""Rows that are worked on at once: few enough to stay in the processor's cache."""
+
+_STEPS = np.arange(-REACH_PX, REACH_PX + 1, STEP_PX, dtype=np.float32)
+_V, _U = (grid.ravel() for grid in np.meshgrid(_STEPS, _STEPS, indexing="ij"))
+MOMENTS = np.stack((np.ones_like(_U), _U, _V, _U * _U, _U * _V, _V * _V))
+"""1, u, v, uu, uv and vv of the neighbours' offsets (u, v): their weights in the sums behind a covariance."""
 
 
 def normals_and_curvature(
@@ -22,90 +29,109 @@ def normals_and_curvature(
     Neighbours whose depth differs by more than `MAX_JUMP` of the pixel's own lie on another surface and do
     not count. Curvature is the smallest eigenvalue over the sum of all three: 0 on a plane, at most 1/3.
     """
-    points = np.moveaxis(observation.camera.unproject(observation.depth), -1, 0)
-    # Unknown points at the camera itself have no neighbour and are nobody's.
-    known = np.pad(np.nan_to_num(points), ((0, 0), (REACH_PX, REACH_PX), (REACH_PX, REACH_PX)))
-    strips = [
-        _strip(known[:, row : row + STRIP_ROWS + 2 * REACH_PX])
-        for row in range(0, points.shape[1], STRIP_ROWS)
-    ]
-    normals, curvature = (np.concatenate(parts, axis=-2) for parts in zip(*strips, strict=True))
-    return np.ascontiguousarray(np.moveaxis(normals, 0, -1)), curvature
+    # A pixel of depth 0 has no neighbour and is nobody's.
+    depth = np.nan_to_num(observation.depth)
+    window = (2 * REACH_PX + 1, 2 * REACH_PX + 1)
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(depth, REACH_PX), window)
+    neighbours = np.moveaxis(around[:, :, ::STEP_PX, ::STEP_PX], (2, 3), (0, 1))
+    ray_x, ray_y = observation.camera.rays(np.float32)
+    normals = np.empty((3, *depth.shape), dtype=np.float32)
+    curvature = np.empty(depth.shape, dtype=np.float32)
+    for top in range(0, len(depth), STRIP_ROWS):
+        rows = slice(top, top + STRIP_ROWS)
+        pixels = _pixel_covariance(depth[rows], neighbours[:, :, rows])
+        covariance = _metric_covariance(pixels, ray_x, ray_y[rows], observation.camera)
+        normals[:, rows], smallest = _smallest_eigenpair(covariance)
+        away = normals[0, rows] * ray_x + normals[1, rows] * ray_y[rows] + normals[2, rows] > 0
+        normals[:, rows] = np.where(away, -normals[:, rows], normals[:, rows])
+        with np.errstate(invalid="ignore", divide="ignore"):
+            share = np.maximum(smallest / (covariance[0] + covariance[3] + covariance[5]), 0.0)
+        curvature[rows] = np.where(np.isnan(normals[0, rows]), np.nan, share)
+    return np.moveaxis(normals, 0, -1), curvature
 
 
-def _strip(
-    padded: Float32[np.ndarray, "3 padded_h padded_w"],
-) -> tuple[Float32[np.ndarray, "3 h w"], Float32[np.ndarray, "h w"]]:
-    """Normals and curvature of a strip of rows, narrow enough to stay in the processor's cache."""
-    covariance = _local_covariance(padded)
-    normals, smallest = _smallest_eigenpair(covariance)
-    points = padded[:, REACH_PX:-REACH_PX, REACH_PX:-REACH_PX]
-    normals *= np.where((normals * points).sum(axis=0) > 0, -1.0, 1.0)
-    total = covariance[0, 0] + covariance[1, 1] + covariance[2, 2]
-    with np.errstate(invalid="ignore", divide="ignore"):
-        curvature = np.where(np.isnan(normals[0]), np.nan, np.maximum(smallest / total, 0.0))
-    return normals.astype(np.float32), curvature.astype(np.float32)
+def _pixel_covariance(
+    depth: Float32[np.ndarray, "h w"], neighbours: Float32[np.ndarray, "k k h w"]
+) -> Float32[np.ndarray, "6 h w"]:
+    """Covariance (m^2) of (u z, v z, d) of each pixel's neighbours: uu, uv, ud, vv, vd, dd; NaN if too few.
 
-
-def _local_covariance(padded: Float32[np.ndarray, "3 padded_h padded_w"]) -> Float[np.ndarray, "3 3 h w"]:
-    """Covariance (m^2) of the neighbours of each pixel within the padding; NaN where too few are known.
-
-    Sums run over offsets from the pixel's own point, so that single precision is enough.
+    A neighbour is (u, v) pixels away, of depth z and d deeper than the pixel itself. Sums run over d, not z,
+    so that single precision is enough.
     """
-    points = padded[:, REACH_PX:-REACH_PX, REACH_PX:-REACH_PX]
-    height, width = points.shape[1:]
-    max_jump = MAX_JUMP * points[2]
-    count = np.zeros((height, width), dtype=np.float32)
-    first = np.zeros((3, height, width), dtype=np.float32)
-    second = np.zeros((3, 3, height, width), dtype=np.float32)
-    for v in range(0, 2 * REACH_PX + 1, STEP_PX):
-        for u in range(0, 2 * REACH_PX + 1, STEP_PX):
-            offset = padded[:, v : v + height, u : u + width] - points
-            near = (np.abs(offset[2]) < max_jump).astype(np.float32)
-            offset *= near
-            count += near
-            first += offset
-            for i in range(3):
-                for j in range(i, 3):
-                    second[i, j] += offset[i] * offset[j]
+    powers = np.empty((3, *neighbours.shape), dtype=np.float32)
+    near, jump, square = powers  # d^0, d^1 and d^2, or 0 for neighbours that do not count
+    np.subtract(neighbours, depth, out=jump)
+    np.abs(jump, out=square)
+    np.less(square, np.float32(MAX_JUMP) * depth, out=near, casting="unsafe")
+    jump *= near
+    np.multiply(jump, jump, out=square)
+    sums = np.stack([MOMENTS @ power.reshape(MOMENTS.shape[1], -1) for power in powers])
+    sums = sums.reshape(*sums.shape[:2], *depth.shape)
+    count = sums[0, 0].copy()
     count[count < MIN_NEIGHBOURS] = np.nan
-    mean = first / count
-    for i in range(3):
-        for j in range(i, 3):
-            second[i, j] = second[j, i] = second[i, j] / count - mean[i] * mean[j]
-    return second.astype(np.float64)
+    (_, n_u, n_v, n_uu, n_uv, n_vv), (d, d_u, d_v, d_uu, d_uv, d_vv), (dd, dd_u, dd_v, *dd_2) = sums / count
+    mean_u, mean_v = depth * n_u + d_u, depth * n_v + d_v
+    uu, uv, vv = (
+        depth * (depth * n_2 + 2 * d_2) + dd_2
+        for n_2, d_2, dd_2 in zip((n_uu, n_uv, n_vv), (d_uu, d_uv, d_vv), dd_2, strict=True)
+    )
+    return np.stack(
+        (
+            uu - mean_u * mean_u,
+            uv - mean_u * mean_v,
+            depth * d_u + dd_u - mean_u * d,
+            vv - mean_v * mean_v,
+            depth * d_v + dd_v - mean_v * d,
+            dd - d * d,
+        )
+    )
+
+
+def _metric_covariance(
+    pixels: Float32[np.ndarray, "6 h w"],
+    ray_x: Float32[np.ndarray, "1 w"],
+    ray_y: Float32[np.ndarray, "h 1"],
+    camera: Camera,
+) -> Float[np.ndarray, "6 h w"]:
+    """Covariance (m^2) of the neighbours' points: xx, xy, xz, yy, yz, zz.
+
+    A neighbour's point lies at (x d + u z / fx, y d + v z / fy, d) from that of a pixel with the ray (x, y).
+    """
+    uu, uv, ud, vv, vd, dd = pixels.astype(np.float64)
+    uu, uv, ud = uu / camera.fx**2, uv / (camera.fx * camera.fy), ud / camera.fx
+    vv, vd = vv / camera.fy**2, vd / camera.fy
+    xz, yz = ud + ray_x * dd, vd + ray_y * dd
+    xx, yy = uu + ray_x * (ud + xz), vv + ray_y * (vd + yz)
+    return np.stack((xx, uv + ray_x * vd + ray_y * xz, xz, yy, yz, dd))
 
 
 def _smallest_eigenpair(
-    matrix: Float[np.ndarray, "3 3 h w"],
+    matrix: Float[np.ndarray, "6 h w"],
 ) -> tuple[Float[np.ndarray, "3 h w"], Float[np.ndarray, "h w"]]:
     """Unit eigenvector and value of the smallest eigenvalue of symmetric matrices, in closed form.
 
-    The eigenvalues are the roots of a cubic with three real roots (Smith 1961); the eigenvector is
-    perpendicular to the rows of the matrix less its eigenvalue, and the longest cross product of two rows
-    is the best conditioned.
+    The eigenvalues are the roots of a cubic with three real roots (Smith 1961). The adjugate of the matrix
+    less its eigenvalue has the eigenvector in every row; the row with the largest diagonal entry is the
+    longest.
     """
-    mean = (matrix[0, 0] + matrix[1, 1] + matrix[2, 2]) / 3
-    eye = np.eye(3)[:, :, None, None]
-    deviator = matrix - mean * eye
-    spread = np.sqrt((deviator**2).sum(axis=(0, 1)) / 6)
+    xx, xy, xz, yy, yz, zz = matrix
+    mean = (xx + yy + zz) / 3
+    a, b, c = xx - mean, yy - mean, zz - mean
+    spread = np.sqrt((a * a + b * b + c * c + 2 * (xy * xy + xz * xz + yz * yz)) / 6)
+    half_det = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz)
     with np.errstate(invalid="ignore", divide="ignore"):
-        half_det = _cross(deviator[0], deviator[1]) * deviator[2]
-        angle = np.arccos(np.clip(half_det.sum(axis=0) / (2 * spread**3), -1, 1)) / 3
+        angle = np.arccos(np.clip(half_det / (2 * spread**3), -1, 1)) / 3
     smallest = mean + 2 * spread * np.cos(angle + 2 * np.pi / 3)
-    rows = matrix - smallest * eye
-    normal = _cross(rows[0], rows[1])
-    length = (normal**2).sum(axis=0)
-    for i, j in ((0, 2), (1, 2)):
-        other = _cross(rows[i], rows[j])
-        other_length = (other**2).sum(axis=0)
-        longer = other_length > length
-        normal[:, longer] = other[:, longer]
-        length[longer] = other_length[longer]
+    a, b, c = xx - smallest, yy - smallest, zz - smallest
+    adjugate_x, adjugate_y, adjugate_z = b * c - yz * yz, a * c - xz * xz, a * b - xy * xy
+    adjugate_xy, adjugate_xz, adjugate_yz = xz * yz - xy * c, xy * yz - b * xz, xy * xz - a * yz
+    by_x, by_y = adjugate_x >= np.maximum(adjugate_y, adjugate_z), adjugate_y >= adjugate_z
+    normal = np.stack(
+        (
+            np.where(by_x, adjugate_x, np.where(by_y, adjugate_xy, adjugate_xz)),
+            np.where(by_x, adjugate_xy, np.where(by_y, adjugate_y, adjugate_yz)),
+            np.where(by_x, adjugate_xz, np.where(by_y, adjugate_yz, adjugate_z)),
+        )
+    )
     with np.errstate(invalid="ignore", divide="ignore"):
-        return normal / np.sqrt(length), smallest
-
-
-def _cross(a: Float[np.ndarray, "3 h w"], b: Float[np.ndarray, "3 h w"]) -> Float[np.ndarray, "3 h w"]:
-    """Cross product of vector images, faster than `numpy.cross` along the first axis."""
-    return np.stack((a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]))
+        return normal / np.sqrt((normal * normal).sum(axis=0)), smallest

@@ -9,7 +9,6 @@ import torch
 from preshape.grasps.heuristic import HeuristicSettings, InitialGrasp, heuristic_grasps
 from preshape.grasps.space import GraspSpace
 from preshape.models.success_model import SuccessModel
-from preshape.perception.image import eight_channel_image
 from preshape.perception.observation import Observation
 from preshape.perception.patch import object_centre, object_patch
 from preshape.perception.segmentation import SegmentationSettings, SegmentedObject, segment
@@ -66,5 +65,5 @@ class ViewPlanner:
         if self.model is None:
             return UnknownSuccess()
         centre = object_centre(segmented, observation.camera)
-        patch = object_patch(eight_channel_image(observation), centre)
+        patch = object_patch(observation, centre)
         return SuccessObjective(self.model, torch.from_numpy(patch))
