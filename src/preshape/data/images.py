@@ -14,16 +14,14 @@ from jaxtyping import Float16
 
 from preshape.data.scene import Scene, SceneRenderer
 from preshape.files import atomic_path
-from preshape.perception.image import CHANNEL_NAMES, eight_channel_image
+from preshape.perception.image import CHANNEL_NAMES
 from preshape.perception.observation import Observation
-from preshape.perception.patch import object_centre, object_patch
+from preshape.perception.patch import PATCH_SIZE, object_centre, object_patch
 from preshape.perception.segmentation import SegmentationSettings, segment
 from preshape.progress import Progress
 
-PERCEPTION_VERSION = 1
+PERCEPTION_VERSION = 2
 """Raised whenever the way from a view to its patch changes, so that cached patches are made anew."""
-PATCH_SIZE = 400
-"""Width and height of an object patch in pixels."""
 MAX_PENDING = 2
 """Rendered views that may wait for perception."""
 
@@ -91,7 +89,7 @@ class PatchCache:
         """Cut the patch out of the view and write it."""
         segmented = segment(observation, self._segmentation)
         centre = object_centre(segmented, observation.camera)
-        patch = object_patch(eight_channel_image(observation), centre, PATCH_SIZE)
+        patch = object_patch(observation, centre)
         with atomic_path(self.path(scene)) as temporary:
             np.save(temporary, patch.astype(np.float16), allow_pickle=False)
 
