@@ -31,7 +31,7 @@ class ClosingSettings:
 
     finger_speed_rad_s: float = 1.0
     thumb_speed_rad_s: float = 1.25
-    lead_rad: float = 0.05
+    lead_rad: float = 0.045
     stopped_travel_rad: float = 0.02
     stopped_time_s: float = 0.2
     max_time_s: float = 2.1
