@@ -186,7 +186,7 @@ BOTTLES: Mapping[str, PackageShape] = {
                 Row(0.97, 0.5, 0.8, SOFT, "cap", 0.1),
                 Row(1, 0.36, 0.66, SOFT, "cap", 0.06),
             ),
-            (Row(0.68, 0.22, 0.09, SOFT, "label", 0.4), Row(0.88, 0.26, 0.14, SOFT, "label", 0.3)),
+            (Row(0.68, 0.22, 0.09, SOFT, "cap", 0.4), Row(0.88, 0.26, 0.14, SOFT, "cap", 0.3)),
         )
     ),
     # Jug: broad foot, a column that carries the neck, and a handle beside it, open between the two.

@@ -6,7 +6,7 @@ from sim.objects.package_shapes import BOX, OVAL, ROUND, SOFT, PackageShape, Row
 from sim.objects.vessel import Vessel
 
 CONTAINERS: Mapping[str, PackageShape] = {
-    "box": Standing((banded(BOX, (0, 1, "body"), (0.22, 1, "label"), (0.72, 1, "body"), (1, 1, "body")),)),
+    "box": Standing((banded(BOX, (0, 1, "body"), (1, 1, "body")),)),
     # A flat carton or bar of chocolate on its broad side.
     "slab": Standing((banded(BOX, (0, 1, "body"), (1, 1, "body")),)),
     # A tin: rims of bare metal around a paper label.

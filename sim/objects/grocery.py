@@ -8,40 +8,16 @@ from functools import cache
 from pathlib import Path
 
 from preshape.errors import InputError
-from sim.objects import (
-    bottle_families,
-    colour,
-    container_families,
-    loft,
-    object_model,
-    package_shapes,
-    shading,
-    vessel,
-    wrapper_families,
-)
 from sim.objects.bottle_families import BOTTLES
-from sim.objects.colour import colour_from_hex
 from sim.objects.container_families import CONTAINERS
+from sim.objects.looks.dressing import dressed
+from sim.objects.looks.look import Look, read_looks
 from sim.objects.object_model import PAPER_FRICTION, ObjectModel, volume_and_centroid
 from sim.objects.package_shapes import PackageShape
-from sim.objects.shading import shaded_part
 from sim.objects.wrapper_families import WRAPPERS
 
 TABLE = Path(__file__).with_name("grocery_items.csv")
-SOURCES = (
-    TABLE,
-    Path(__file__),
-    *(
-        Path(str(module.__file__))
-        for module in (
-            *(object_model, colour, shading, loft, package_shapes, vessel),
-            *(container_families, bottle_families, wrapper_families),
-        )
-    ),
-)
-"""What the models depend on."""
 FAMILIES: Mapping[str, PackageShape] = {**CONTAINERS, **BOTTLES, **WRAPPERS}
-METAL = "#b9bcc2"
 
 
 @dataclass(frozen=True)
@@ -53,31 +29,28 @@ class GroceryItem:
         size_mm: along x, y and z, resting on the predetermined support surface: from scans where they are
             known (boxes +-5 %, bottles +-15 %), else of the item as sold.
         mass_g: of the full package.
-        colours: sRGB "#rrggbb" of each material of the family.
     """
 
     family: str
     size_mm: tuple[float, float, float]
     mass_g: float
-    colours: Mapping[str, str]
-
-
-def _item(row: Mapping[str, str]) -> GroceryItem:
-    return GroceryItem(
-        row["family"],
-        (float(row["x_mm"]), float(row["y_mm"]), float(row["z_mm"])),
-        float(row["mass_g"]),
-        {"rim": METAL, "collar": row["body"], **{key: row[key] for key in ("body", "label", "cap")}},
-    )
 
 
 def _read_items() -> Mapping[str, GroceryItem]:
     with TABLE.open(newline="") as file:
-        return {row["name"]: _item(row) for row in csv.DictReader(file)}
+        return {
+            row["name"]: GroceryItem(
+                row["family"],
+                (float(row["x_mm"]), float(row["y_mm"]), float(row["z_mm"])),
+                float(row["mass_g"]),
+            )
+            for row in csv.DictReader(file)
+        }
 
 
 GROCERY_ITEMS: Mapping[str, GroceryItem] = _read_items()
 """The table grocery_items.csv by name."""
+GROCERY_LOOKS: Mapping[str, Look] = read_looks()
 
 
 @dataclass(frozen=True)
@@ -100,10 +73,11 @@ class GrocerySet:
 
     @property
     def fingerprint(self) -> str:
-        """Hash of the table, the shapes and the code that makes solids of them."""
+        """Hash of the tables, the shapes and the code that makes objects of them."""
         digest = hashlib.sha256(repr((self.density, self.friction)).encode())
-        for path in SOURCES:
-            digest.update(path.read_bytes())
+        for path in sorted(Path(__file__).parent.rglob("*")):
+            if path.suffix in (".py", ".csv"):
+                digest.update(path.read_bytes())
         return digest.hexdigest()
 
     def load(self, name: str) -> ObjectModel:
@@ -122,9 +96,6 @@ def _build(name: str, density: float | None, friction: float) -> ObjectModel:
     item = GROCERY_ITEMS[name]
     width, depth, height = (length / 1000 for length in item.size_mm)
     solid = FAMILIES[item.family].solid((width, depth, height))
-    visuals = tuple(
-        shaded_part(triangles, colour_from_hex(item.colours[material]))
-        for material, triangles in solid.walls.items()
-    )
+    visuals = dressed(solid, (width, depth, height), item.family, GROCERY_LOOKS[name])
     mass = item.mass_g / 1000 if density is None else density * volume_and_centroid(solid.parts)[0]
     return ObjectModel(name, solid.parts, visuals, mass, friction).centred()

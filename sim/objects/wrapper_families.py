@@ -11,14 +11,14 @@ WRAPPERS: Mapping[str, PackageShape] = {
             tuple(
                 Row(y, width, height, SOFT, material)
                 for y, width, height, material in (
-                    (0, 1, 0.1, "rim"),
-                    (0.085, 1, 0.1, "rim"),
+                    (0, 1, 0.1, "collar"),
+                    (0.085, 1, 0.1, "collar"),
                     (0.085, 0.9, 0.12, "body"),
                     (0.15, 0.9, 1, "label"),
                     (0.85, 0.9, 1, "body"),
-                    (0.915, 0.9, 0.12, "rim"),
-                    (0.915, 1, 0.1, "rim"),
-                    (1, 1, 0.1, "rim"),
+                    (0.915, 0.9, 0.12, "collar"),
+                    (0.915, 1, 0.1, "collar"),
+                    (1, 1, 0.1, "collar"),
                 )
             ),
         )
@@ -29,12 +29,12 @@ WRAPPERS: Mapping[str, PackageShape] = {
             tuple(
                 Row(y, width, height, PILLOW, material)
                 for y, width, height, material in (
-                    (0, 0.97, 0.08, "rim"),
+                    (0, 0.97, 0.08, "collar"),
                     (0.08, 0.97, 0.08, "body"),
                     (0.27, 1, 1, "label"),
                     (0.73, 1, 1, "body"),
-                    (0.92, 0.97, 0.08, "rim"),
-                    (1, 0.97, 0.08, "rim"),
+                    (0.92, 0.97, 0.08, "collar"),
+                    (1, 0.97, 0.08, "collar"),
                 )
             ),
         )
@@ -45,12 +45,12 @@ WRAPPERS: Mapping[str, PackageShape] = {
             tuple(
                 Row(y, width, height, SOFT, material, sag)
                 for y, width, height, material, sag in (
-                    (0, 0.88, 0.05, "rim", -0.2),
+                    (0, 0.88, 0.05, "collar", -0.2),
                     (0.06, 0.9, 0.06, "body", -0.2),
                     (0.2, 1, 1, "label", 0),
                     (0.8, 1, 1, "body", 0),
-                    (0.94, 0.9, 0.06, "rim", -0.2),
-                    (1, 0.88, 0.05, "rim", -0.2),
+                    (0.94, 0.9, 0.06, "collar", -0.2),
+                    (1, 0.88, 0.05, "collar", -0.2),
                 )
             ),
         )
@@ -63,8 +63,8 @@ WRAPPERS: Mapping[str, PackageShape] = {
                 Row(0.05, 0.98, 0.97, OVAL, "body"),
                 Row(0.2, 1, 1, OVAL, "label"),
                 Row(0.64, 0.6, 1, SOFT, "body"),
-                Row(0.88, 0.1, 1, SOFT, "rim"),
-                Row(1, 0.05, 1, SOFT, "rim"),
+                Row(0.88, 0.1, 1, SOFT, "collar"),
+                Row(1, 0.05, 1, SOFT, "collar"),
             ),
         )
     ),
@@ -90,8 +90,8 @@ WRAPPERS: Mapping[str, PackageShape] = {
                 Row(0.2, 0.76, 1, OVAL, "label"),
                 Row(0.55, 0.9, 0.7, OVAL, "label", -0.15),
                 Row(0.85, 0.98, 0.28, OVAL, "body", -0.36),
-                Row(0.95, 1, 0.08, SOFT, "rim", -0.46),
-                Row(1, 1, 0.08, SOFT, "rim", -0.46),
+                Row(0.95, 1, 0.08, SOFT, "collar", -0.46),
+                Row(1, 1, 0.08, SOFT, "collar", -0.46),
             ),
         )
     ),
@@ -101,9 +101,9 @@ WRAPPERS: Mapping[str, PackageShape] = {
                 Row(0, 0.84, 0.84, ROUND, "cap", -0.08),
                 Row(0.03, 1, 1, ROUND, "cap"),
                 Row(0.4, 1, 1, ROUND, "cap"),
-                Row(0.4, 0.9, 0.9, ROUND, "body", -0.05),
-                Row(0.96, 0.9, 0.9, ROUND, "label", -0.05),
-                Row(1, 0.74, 0.74, ROUND, "label", -0.13),
+                Row(0.4, 0.9, 0.9, ROUND, "label", -0.05),
+                Row(0.96, 0.9, 0.9, ROUND, "cap", -0.05),
+                Row(1, 0.74, 0.74, ROUND, "cap", -0.13),
             ),
         )
     ),

@@ -1,0 +1,1 @@
+"""What the generated objects look like; nothing here changes how they move."""
