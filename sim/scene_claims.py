@@ -57,6 +57,7 @@ class SceneClaims:
         self.goal = goal
         self._folder, self._size = folder, block_size
         self._counts = np.full(limit, UNFINISHED)
+        self._counted = self._finished = 0
         self._mine: dict[int, SceneBlock] = {}
         self._to_do: deque[int] = deque()
         self._told: set[str] = set()
@@ -68,18 +69,17 @@ class SceneClaims:
     @property
     def counted(self) -> int:
         """Sum of the counts of the finished scenes."""
-        return int(np.maximum(self._counts, 0).sum())
+        return self._counted
 
     @property
     def complete(self) -> bool:
         """Whether all needed scenes are finished."""
-        end = self._end()
-        return self.counted >= self.goal.wanted and bool((self._counts[:end] != UNFINISHED).all())
+        return self.counted >= self.goal.wanted and bool((self._counts[: self._end()] != UNFINISHED).all())
 
     @property
     def exhausted(self) -> bool:
         """Whether all scenes that may be tried are finished, and are not enough."""
-        return self.counted < self.goal.wanted and bool((self._counts != UNFINISHED).all())
+        return self.counted < self.goal.wanted and self._finished == len(self._counts)
 
     def next(self) -> int | None:
         """Number of a needed scene that is this process's to finish; None if there is none now.
@@ -142,8 +142,10 @@ class SceneClaims:
 
     def _end(self) -> int:
         """Number after the last scene that is needed, as far as is known: it only ever falls."""
+        if self.counted < self.goal.wanted:
+            return len(self._counts)
         sums = np.maximum(self._counts, 0).cumsum()
-        return min(int(np.searchsorted(sums, self.goal.wanted)) + 1, len(sums))
+        return int(np.searchsorted(sums, self.goal.wanted)) + 1
 
     def _unfinished(self) -> Iterator[SceneBlock]:
         """The blocks with needed scenes that this process has not claimed."""
@@ -157,6 +159,8 @@ class SceneClaims:
         for number, scene in finished.items():
             if number < len(self._counts) and self._counts[number] == UNFINISHED:
                 self._counts[number] = self.goal.count(scene)
+                self._counted += int(self._counts[number])
+                self._finished += 1
 
     def _claim(self) -> bool:
         for block in self._unfinished():
