@@ -51,18 +51,18 @@ class SheetSettings:
     font_px: float = 10.0
 
 
-def contact_sheet(objects: ObjectSet, pose: PortraitSettings, sheet: SheetSettings) -> Image.Image:
+def contact_sheet(objects: ObjectSet, portraits: PortraitSettings, sheet: SheetSettings) -> Image.Image:
     """The portraits of all objects of a set in alphabetic order, each with its name."""
-    width, height = pose.width_px, pose.height_px + sheet.caption_px
+    width, height = portraits.width_px, portraits.height_px + sheet.caption_px
     rows = -(-len(objects.names) // sheet.columns)
     page = Image.new("RGB", (width * sheet.columns, height * rows), "white")
     draw = ImageDraw.Draw(page)
     for number, name in enumerate(objects.names):
         row, column = divmod(number, sheet.columns)
         corner = (column * width, row * height)
-        page.paste(Image.fromarray(portrait(objects.load(name), pose)), corner)
+        page.paste(Image.fromarray(portrait(objects.load(name), portraits)), corner)
         lines = _wrapped(draw, name.replace("_", " "), width - 8, sheet.font_px)
-        place = (corner[0] + width / 2, corner[1] + pose.height_px + 2)
+        place = (corner[0] + width / 2, corner[1] + portraits.height_px + 2)
         draw.multiline_text(
             place, lines, (20, 20, 20), font_size=sheet.font_px, anchor="ma", align="center", spacing=1
         )
