@@ -12,17 +12,17 @@ from sapien.render import RenderCameraComponent
 from preshape.data.scene import Scene
 from preshape.geometry.camera import Camera
 from preshape.perception.observation import Observation
+from preshape.source_digest import source_digest
 from sim.camera import add_camera, colour, depth, place_camera, segmentation, take_picture
 from sim.kinect_noise import KinectNoise
 from sim.objects.actor import add_object
 from sim.objects.object_model import ObjectSet
+from sim.robots.appearance import appearance_digest
 from sim.robots.description import RobotDescription
 from sim.scene_systems import make_render_system
 from sim.simulated_robot import SimulatedRobot
 from sim.table import TableSettings, build_table
 
-RENDERING_VERSION = 1
-"""To be raised with every change of the code that changes an image, so that caches notice."""
 NOISE_STREAM = 2
 """Keeps the sensor's random numbers apart from others that start from the scene's seed."""
 
@@ -47,14 +47,18 @@ class SapienSceneRenderer:
     def fingerprint(self) -> str:
         """Hash of all that an image depends on besides its scene."""
         parts = (
-            RENDERING_VERSION,
+            source_digest(__name__),
+            sapien.__version__,
             self.objects.fingerprint,
             asdict(self.table),
             None if self.noise is None else asdict(self.noise),
-            None if self.robot is None else self.robot.urdf_path.read_text(),
-            None if self.robot is None else (self.robot.arm_home.tolist(), self.robot.hand_open.tolist()),
+            None if self.robot is None else appearance_digest(self.robot),
         )
         return hashlib.sha256(repr(parts).encode()).hexdigest()
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Other processes get what the renderer is made of, not its stage."""
+        return type(self), (self.objects, self.table, self.noise, self.robot)
 
     def __call__(self, scene: Scene) -> Observation:
         """The RGB-D view of a scene.

@@ -26,7 +26,10 @@ Work = Callable[[Job, BeginStep], Result]
 """Does a job."""
 
 # One process per core and one thread per process: more would only get in each other's way.
-ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+# The last one is for lavapipe, which draws the pictures.
+ONE_THREAD = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "LP_NUM_THREADS"), "1"
+)
 TRIES = 2
 PR_SET_PDEATHSIG = 1
 

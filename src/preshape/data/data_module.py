@@ -12,7 +12,6 @@ from preshape.data.batches import InOrder, PositiveBatches
 from preshape.data.folds import HoldOut, split_trials
 from preshape.data.grasp_dataset import GraspBatch, GraspDataset
 from preshape.data.images import PatchCache
-from preshape.data.scene import SceneRenderer
 from preshape.data.tables import data_hash, read_data_set
 from preshape.data.trial_table import TableOrigin
 from preshape.errors import InputError
@@ -43,8 +42,7 @@ class GraspDataModule(lightning.LightningDataModule):
         folder: the data set: `scenes.parquet` and `trials.parquet`.
         origin: robot, object set and camera that they must have been collected with.
         space: grasp space of theta.
-        renderer: makes the images of the scenes.
-        cache: folder of the rendered patches.
+        patches: makes and keeps the patches of the scenes.
         hold_out: which trials are held out.
         batches: how the others are drawn.
     """
@@ -60,14 +58,13 @@ class GraspDataModule(lightning.LightningDataModule):
         folder: str | Path,
         origin: TableOrigin,
         space: GraspSpace,
-        renderer: SceneRenderer,
-        cache: str | Path,
+        patches: PatchCache,
         hold_out: HoldOut,
         batches: BatchSettings,
     ) -> None:
         super().__init__()
         self._folder, self._origin, self._space = Path(folder), origin, space
-        self._cache = PatchCache(cache, renderer)
+        self._patches = patches
         self._hold_out, self.batches = hold_out, batches
 
     def setup(self, stage: str | None = None) -> None:
@@ -88,11 +85,11 @@ class GraspDataModule(lightning.LightningDataModule):
             )
         executed = trials.executed
         split = split_trials(executed, self._hold_out)
-        self._cache.fill([scenes.by_id[scene_id] for scene_id in np.unique(executed.scene_ids).tolist()])
+        self._patches.fill([scenes.by_id[scene_id] for scene_id in np.unique(executed.scene_ids).tolist()])
 
         def part(rows: Int[np.ndarray, "rows"]) -> GraspDataset:
             mask = np.isin(np.arange(len(executed)), rows)
-            return GraspDataset(executed.where(mask), scenes.by_id, self._cache)
+            return GraspDataset(executed.where(mask), scenes.by_id, self._patches)
 
         self.train, self.validation, self.test = part(split.train), part(split.validation), part(split.test)
         self.data_hash = data_hash(self._folder)

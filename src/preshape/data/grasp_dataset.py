@@ -55,4 +55,4 @@ class GraspDataset(Dataset[GraspBatch]):
     def patches(self) -> Iterator[Float16[Tensor, "8 h w"]]:
         """The patch of every scene, once."""
         for scene_id in np.unique(self.trials.scene_ids).tolist():
-            yield torch.from_numpy(np.array(self._cache[self._scenes[scene_id]]))
+            yield torch.from_numpy(self._cache[self._scenes[scene_id]])

@@ -2,103 +2,123 @@
 
 import hashlib
 import json
-from collections import deque
-from collections.abc import Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+import random
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from functools import cached_property
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 from jaxtyping import Float16
 
+from preshape.data.bounded_folder import BoundedFolder
+from preshape.data.patch_files import TYPICAL_BYTES, decode, encode
 from preshape.data.scene import Scene, SceneRenderer
-from preshape.files import atomic_path
-from preshape.perception.image import CHANNEL_NAMES
-from preshape.perception.observation import Observation
-from preshape.perception.patch import PATCH_SIZE, object_centre, object_patch
+from preshape.errors import InputError
+from preshape.perception.patch import object_centre, object_patch
 from preshape.perception.segmentation import SegmentationSettings, segment
 from preshape.progress import Progress
-
-PERCEPTION_VERSION = 2
-"""Raised whenever the way from a view to its patch changes, so that cached patches are made anew."""
-MAX_PENDING = 2
-"""Rendered views that may wait for perception."""
+from preshape.source_digest import source_digest
 
 
 class PatchCache:
     """Object patches of scenes, in half precision, one file each.
 
     A file's name is the digest of everything that the patch is a function of: the scene, the renderer, the
-    segmentation and the version of perception. So a file is never out of date, only unused.
+    segmentation and the code. So a file is never out of date, only unused. Several processes may share the
+    folder, and it may be deleted while they do.
 
     Args:
         folder: where the files lie.
         renderer: makes the image of a scene.
-        segmentation: how the object is found in it.
+        max_gigabytes: how much the files may take (10^9 bytes); the least recently used ones go first.
+        segmentation: how the object is found in an image.
+        maker: makes the patches of many scenes.
     """
 
     def __init__(
-        self, folder: str | Path, renderer: SceneRenderer, segmentation: SegmentationSettings | None = None
+        self,
+        folder: str | Path,
+        renderer: SceneRenderer,
+        max_gigabytes: float = 10.0,
+        segmentation: SegmentationSettings | None = None,
+        maker: "PatchMaker | None" = None,
     ) -> None:
-        self._folder = Path(folder)
+        self._files = BoundedFolder(folder, round(max_gigabytes * 1e9))
         self._renderer = renderer
         self._segmentation = segmentation or SegmentationSettings()
-
-    @cached_property
-    def _origin(self) -> list[object]:
-        return [self._renderer.fingerprint, asdict(self._segmentation), PERCEPTION_VERSION]
+        self._maker = maker or one_by_one
 
     def path(self, scene: Scene) -> Path:
         """Where the patch of a scene lies, or would lie."""
-        text = json.dumps([asdict(scene), self._origin], sort_keys=True, default=np.ndarray.tolist)
-        digest = hashlib.sha256(text.encode()).hexdigest()
-        return self._folder / digest[:2] / f"{digest}.npy"
+        return self._files.path(self._name(scene))
+
+    def holds(self, scene: Scene) -> bool:
+        """Whether there is a file for the scene, which then counts as used."""
+        return self._files.use(self._name(scene))
 
     def fill(self, scenes: Sequence[Scene]) -> None:
-        """Render what is missing.
+        """Make what is missing; goes on where an interrupted filling stopped.
 
         Raises:
-            InputError: if no object can be made out in a scene, or the cache cannot be written to.
+            InputError: if the scenes are more than the cache may hold, no object can be made out in one of
+                them, or the cache cannot be written to.
         """
-        missing = [scene for scene in scenes if _open(self.path(scene)) is None]
-        if not missing:
-            return
-        # One thread looks at views while the next is rendered; a second would share Open3D's random numbers.
-        with (
-            Progress("Rendering", len(missing), "scenes") as progress,
-            ThreadPoolExecutor(max_workers=1) as perception,
-        ):
-            pending: deque[Future[None]] = deque()
-            for scene in missing:
-                pending.append(perception.submit(self._keep, scene, self._renderer(scene)))
-                while len(pending) > MAX_PENDING or (pending and scene is missing[-1]):
-                    pending.popleft().result()
+        needed = len(scenes) * TYPICAL_BYTES
+        if needed > self._files.max_bytes:
+            raise InputError(
+                f"The patches of {len(scenes)} scenes take {needed / 1e9:.1f} GB, but the cache may hold "
+                f"{self._files.max_bytes / 1e9:.1f} GB",
+                where=self._files.folder,
+                fix="allow more with dataset.data.patches.max_gigabytes=...",
+            )
+        missing = [scene for scene in scenes if not self.holds(scene)]
+        # In any order, so that processes that fill the same cache at the same time share the work.
+        random.shuffle(missing)
+        if missing:
+            with Progress("Rendering", len(scenes), "scenes", done=len(scenes) - len(missing)) as progress:
+                for _ in self._maker(self, missing):
                     progress.advance()
 
-    def __getitem__(self, scene: Scene) -> Float16[np.ndarray, "8 400 400"]:
-        """The patch of a scene, mapped from its file, which is made if it is missing."""
-        patch = _open(self.path(scene))
-        if patch is None:
-            self._keep(scene, self._renderer(scene))
-            patch = _open(self.path(scene))
-            assert patch is not None
-        return patch
+    def make(self, scene: Scene) -> Float16[np.ndarray, "8 400 400"]:
+        """Render the patch of a scene and write it.
 
-    def _keep(self, scene: Scene, observation: Observation) -> None:
-        """Cut the patch out of the view and write it."""
-        segmented = segment(observation, self._segmentation)
-        centre = object_centre(segmented, observation.camera)
+        Raises:
+            InputError: if no object can be made out in the scene, or the cache cannot be written to.
+        """
+        observation = self._renderer(scene)
+        centre = object_centre(segment(observation, self._segmentation), observation.camera)
         patch = object_patch(observation, centre)
-        with atomic_path(self.path(scene)) as temporary:
-            np.save(temporary, patch.astype(np.float16), allow_pickle=False)
+        self._files.write(self._name(scene), encode(patch))
+        return patch.astype(np.float16)
+
+    def __getitem__(self, scene: Scene) -> Float16[np.ndarray, "8 400 400"]:
+        """The patch of a scene, which is made if its file is missing or damaged."""
+        content = self._files.read(self._name(scene))
+        patch = None if content is None else decode(content)
+        return self.make(scene) if patch is None else patch
+
+    @cached_property
+    def _origin(self) -> list[object]:
+        return [self._renderer.fingerprint, asdict(self._segmentation), source_digest(__name__)]
+
+    def _name(self, scene: Scene) -> str:
+        text = json.dumps([asdict(scene), self._origin], sort_keys=True, default=np.ndarray.tolist)
+        return f"{hashlib.sha256(text.encode()).hexdigest()}.patch"
 
 
-def _open(path: Path) -> Float16[np.ndarray, "8 400 400"] | None:
-    """The patch in a file; None if there is none, or the file is damaged."""
-    try:
-        patch = np.load(path, mmap_mode="r", allow_pickle=False)
-    except (OSError, ValueError, EOFError):
-        return None
-    fits = patch.dtype == np.float16 and patch.shape == (len(CHANNEL_NAMES), PATCH_SIZE, PATCH_SIZE)
-    return patch if fits else None
+class PatchMaker(Protocol):
+    """Makes the patches of many scenes."""
+
+    def __call__(self, cache: PatchCache, scenes: Sequence[Scene]) -> Iterator[Scene]:
+        """Make them in any order; yields each scene when its patch is there."""
+        ...
+
+
+def one_by_one(cache: PatchCache, scenes: Sequence[Scene]) -> Iterator[Scene]:
+    """Make patches in this process; those that another process made in the meantime are left to it."""
+    for scene in scenes:
+        if not cache.holds(scene):
+            cache.make(scene)
+        yield scene

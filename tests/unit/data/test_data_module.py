@@ -9,6 +9,7 @@ from synthetic_scenes import ORIGIN, BoxRenderer, allegro_space, write_data_set
 
 from preshape.data.data_module import BatchSettings, GraspDataModule
 from preshape.data.folds import HoldOut
+from preshape.data.images import PatchCache
 from preshape.data.tables import read_trials
 from preshape.data.trial_table import TableOrigin
 from preshape.errors import InputError
@@ -28,8 +29,7 @@ def make_module(folder: Path, origin: TableOrigin = ORIGIN) -> GraspDataModule:
         folder=folder,
         origin=origin,
         space=allegro_space(),
-        renderer=BoxRenderer(),
-        cache=folder / "cache",
+        patches=PatchCache(folder / "cache", BoxRenderer()),
         hold_out=HoldOut("scenes", fold=0, validation_fraction=0.25, seed=0),
         batches=BatchSettings(batch_size=4, min_positives=1, batches_per_epoch=5, seed=0),
     )

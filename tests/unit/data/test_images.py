@@ -1,5 +1,8 @@
-"""The patch cache: derived, deletable, never out of date."""
+"""The patch cache: derived, deletable at any moment, bounded, never out of date."""
 
+import os
+import shutil
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,9 +11,12 @@ import pytest
 from synthetic_scenes import BoxRenderer, make_scene
 
 from preshape.data.images import PatchCache
+from preshape.data.patch_files import TYPICAL_BYTES
 from preshape.data.scene import Scene
+from preshape.errors import InputError
 from preshape.perception.observation import Observation
-from preshape.perception.segmentation import SegmentationSettings
+from preshape.perception.patch import object_centre, object_patch
+from preshape.perception.segmentation import SegmentationSettings, segment
 
 
 class CountingRenderer(BoxRenderer):
@@ -30,33 +36,111 @@ def renderer() -> CountingRenderer:
     return CountingRenderer()
 
 
+def files(folder: Path) -> list[Path]:
+    return sorted(path for path in folder.rglob("*") if path.is_file())
+
+
 def test_a_patch_is_rendered_once(tmp_path: Path, renderer: CountingRenderer) -> None:
     scenes = [make_scene(0), make_scene(1)]
     cache = PatchCache(tmp_path, renderer)
     cache.fill(scenes)
     cache.fill(scenes)
-    first = np.array(cache[scenes[0]])
+    first = cache[scenes[0]]
     assert renderer.calls == 2
     again = PatchCache(tmp_path, renderer)[scenes[0]]
     assert renderer.calls == 2
     assert np.array_equal(first, again)
 
 
-def test_the_object_is_in_the_middle_of_its_patch(tmp_path: Path, renderer: CountingRenderer) -> None:
-    patch = PatchCache(tmp_path, renderer)[make_scene(0)]
-    red, green = patch[0, 200, 200], patch[1, 200, 200]
-    assert (red, green) == pytest.approx((200 / 255, 40 / 255), abs=1e-3)
-
-
-def test_a_damaged_or_deleted_file_is_made_again(tmp_path: Path, renderer: CountingRenderer) -> None:
+def test_what_is_kept_is_the_patch_in_half_precision(tmp_path: Path, renderer: CountingRenderer) -> None:
     scene, cache = make_scene(0), PatchCache(tmp_path, renderer)
-    patch = np.array(cache[scene])
-    cache.path(scene).write_bytes(cache.path(scene).read_bytes()[:1000])
+    observation = renderer(scene)
+    centre = object_centre(segment(observation, SegmentationSettings()), observation.camera)
+    patch = object_patch(observation, centre).astype(np.float16)
+    np.testing.assert_array_equal(cache[scene], patch)  # made now
+    np.testing.assert_array_equal(cache[scene], patch)  # from its file
+
+
+@pytest.mark.parametrize("damage", ["cut off", "altered", "emptied", "deleted", "folder deleted"])
+def test_a_file_that_is_damaged_or_gone_is_made_again(
+    tmp_path: Path, renderer: CountingRenderer, damage: str
+) -> None:
+    scene, cache = make_scene(0), PatchCache(tmp_path, renderer)
+    patch = cache[scene]
+    path = cache.path(scene)
+    content = path.read_bytes()
+    if damage == "folder deleted":
+        shutil.rmtree(tmp_path)
+    elif damage == "deleted":
+        path.unlink()
+    else:
+        altered = content[:5000] + bytes([content[5000] ^ 1]) + content[5001:]
+        path.write_bytes({"cut off": content[:1000], "emptied": b"", "altered": altered}[damage])
     assert np.array_equal(cache[scene], patch)
-    cache.path(scene).unlink()
-    assert np.array_equal(cache[scene], patch)
-    assert renderer.calls == 3
-    assert list(tmp_path.rglob("*.npy")) == [cache.path(scene)]
+    assert renderer.calls == 2
+    assert path.read_bytes() == content
+    assert files(tmp_path) == [path]
+
+
+def test_deleting_the_folder_during_a_filling_does_no_harm(tmp_path: Path) -> None:
+    class Deleting(BoxRenderer):
+        def __call__(self, scene: Scene) -> Observation:
+            shutil.rmtree(tmp_path / "cache", ignore_errors=True)
+            return super().__call__(scene)
+
+    scenes = [make_scene(number) for number in range(3)]
+    cache = PatchCache(tmp_path / "cache", Deleting())
+    cache.fill(scenes)
+    assert files(tmp_path)[0] in [cache.path(scene) for scene in scenes]
+    assert len(files(tmp_path)) == 1
+
+
+def test_an_interrupted_filling_goes_on(tmp_path: Path, renderer: CountingRenderer) -> None:
+    def stops(cache: PatchCache, scenes: list[Scene]) -> Iterator[Scene]:
+        for scene in scenes[:2]:
+            cache.make(scene)
+            yield scene
+        raise KeyboardInterrupt
+
+    scenes = [make_scene(number) for number in range(4)]
+    with pytest.raises(KeyboardInterrupt):
+        PatchCache(tmp_path, renderer, maker=stops).fill(scenes)
+    assert len(files(tmp_path)) == 2
+    PatchCache(tmp_path, renderer).fill(scenes)
+    assert renderer.calls == 4
+
+
+def test_the_least_recently_used_go_when_the_bound_is_reached(
+    tmp_path: Path, renderer: CountingRenderer
+) -> None:
+    scenes = [make_scene(number) for number in range(9)]
+    size = largest_file(tmp_path / "probe", renderer, scenes)
+    bound = 5.5 * size
+    cache = PatchCache(tmp_path / "cache", renderer, max_gigabytes=bound / 1e9)
+    for age, scene in enumerate(scenes):
+        cache.make(scene)
+        os.utime(cache.path(scene), (age, age))
+        if age == 3:
+            cache[scenes[0]]  # used again
+        assert sum(path.stat().st_size for path in files(tmp_path / "cache")) <= bound
+    kept = [number for number, scene in enumerate(scenes) if cache.path(scene).exists()]
+    assert {0, 7, 8} <= set(kept)
+    assert 1 not in kept
+
+
+def largest_file(folder: Path, renderer: CountingRenderer, scenes: list[Scene]) -> int:
+    """Bytes of the largest patch."""
+    cache = PatchCache(folder, renderer)
+    for scene in scenes:
+        cache.make(scene)
+    return max(path.stat().st_size for path in files(folder))
+
+
+def test_more_scenes_than_the_cache_may_hold_are_refused(tmp_path: Path, renderer: CountingRenderer) -> None:
+    cache = PatchCache(tmp_path, renderer, max_gigabytes=1.5 * TYPICAL_BYTES / 1e9)
+    with pytest.raises(InputError, match="2 scenes"):
+        cache.fill([make_scene(0), make_scene(1)])
+    assert renderer.calls == 0
 
 
 def test_the_name_follows_everything_that_the_patch_depends_on(tmp_path: Path) -> None:
@@ -70,8 +154,9 @@ def test_the_name_follows_everything_that_the_patch_depends_on(tmp_path: Path) -
         replace(scene, object_id="box_1"),
         replace(scene, camera=replace(scene.camera, fx=300.0)),
     ]
+    segmentation = SegmentationSettings(min_height_m=0.01)
     paths = {PatchCache(tmp_path, CountingRenderer()).path(one) for one in scenes}
     paths.add(PatchCache(tmp_path, CountingRenderer("boxes 2")).path(scene))
-    paths.add(PatchCache(tmp_path, CountingRenderer(), SegmentationSettings(min_height_m=0.01)).path(scene))
+    paths.add(PatchCache(tmp_path, CountingRenderer(), segmentation=segmentation).path(scene))
     assert len(paths) == 7
     assert PatchCache(tmp_path, CountingRenderer()).path(make_scene(0)) in paths

@@ -17,6 +17,7 @@ from torch import Tensor, nn
 from preshape.checkpoints import load_weights
 from preshape.data.data_module import BatchSettings, GraspDataModule
 from preshape.data.folds import HoldOut
+from preshape.data.images import PatchCache
 from preshape.models.lightning_module import LearningSettings
 from preshape.models.success_model import SuccessModel
 from preshape.tracking import TrackedRun, UntrackedRun
@@ -57,8 +58,7 @@ def make_data(folder: Path, validation_fraction: float) -> GraspDataModule:
         folder=folder,
         origin=ORIGIN,
         space=allegro_space(),
-        renderer=BoxRenderer(),
-        cache=folder / "cache",
+        patches=PatchCache(folder / "cache", BoxRenderer()),
         hold_out=HoldOut("scenes", fold=0, validation_fraction=validation_fraction, seed=0),
         batches=BatchSettings(batch_size=4, min_positives=1, batches_per_epoch=6, seed=0),
     )

@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import pickle
 import subprocess
 import sys
 from dataclasses import replace
@@ -73,6 +74,24 @@ def test_the_mask_is_the_object() -> None:
     on_table = around[(np.abs(around[:, 2] - TABLE.top_m) < 0.01) & (around[:, 1] > -0.45)]
     assert len(on_table) > 50_000
     np.testing.assert_allclose(on_table[:, 2], TABLE.top_m, atol=2e-4)
+
+
+def test_what_is_sent_to_another_process_makes_the_same_image() -> None:
+    scene = scene_of("spam")
+    image = digest(NOISY(scene))
+    sent = pickle.loads(pickle.dumps(NOISY))
+    assert sent.fingerprint == NOISY.fingerprint
+    assert digest(sent(scene)) == image
+
+
+def test_each_camera_sees_its_own_view() -> None:
+    scene = scene_of("spam")
+    image = digest(IDEAL(scene))
+    small = camera_looking_at([0.6, -0.8, 1.1], [0.8, 0, 0.65], 320, 240, 262)
+    moved = camera_looking_at([0.7, -0.9, 1.25], [0.8, 0, 0.65], 640, 480, 525)
+    assert IDEAL(replace(scene, camera=small)).depth.shape == (240, 320)
+    assert digest(IDEAL(replace(scene, camera=moved))) != image
+    assert digest(IDEAL(scene)) == image
 
 
 def test_noise_touches_the_depth_only() -> None:

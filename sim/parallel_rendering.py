@@ -1,0 +1,60 @@
+"""Rendering the patches of many scenes in worker processes."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from preshape.data.images import PatchCache, one_by_one
+from preshape.data.scene import Scene
+from preshape.errors import InputError
+from sim.workers import BeginStep, Work, Workers, available_cores
+
+SCENES_PER_WORKER = 30
+"""Fewer are not worth another process, which needs some seconds to start."""
+
+
+@dataclass(frozen=True)
+class ParallelRendering:
+    """A `preshape.data.images.PatchMaker`: one thread and one renderer in each of several processes.
+
+    Args:
+        workers: number of processes; None takes every core.
+        scene_limit_s: a worker that needs longer for a scene is taken for stuck, and replaced (s).
+    """
+
+    workers: int | None = None
+    scene_limit_s: float = 120.0
+
+    def __call__(self, cache: PatchCache, scenes: Sequence[Scene]) -> Iterator[Scene]:
+        """Make the patches; yields each scene when its patch is there.
+
+        Raises:
+            InputError: if a patch cannot be made, or its worker dies again and again.
+        """
+        count = min(self.workers or available_cores(), -(-len(scenes) // SCENES_PER_WORKER))
+        if count <= 1:
+            yield from one_by_one(cache, scenes)
+            return
+        waiting = list(range(len(scenes)))
+        with Workers(partial(_renderer, cache, tuple(scenes)), count, self.scene_limit_s) as workers:
+            while waiting or workers.busy:
+                while waiting and workers.free:
+                    workers.give(waiting.pop())
+                for number, made in workers.wait(1.0):
+                    if not made:
+                        raise InputError(
+                            f"The patch of scene {scenes[number].scene_id} cannot be made: its worker fails",
+                            where=cache.path(scenes[number]),
+                            fix="look at the warnings above; if memory is short, take fewer workers",
+                        )
+                    yield scenes[number]
+
+
+def _renderer(cache: PatchCache, scenes: Sequence[Scene]) -> Work[int, bool]:
+    return partial(_render, cache, scenes)
+
+
+def _render(cache: PatchCache, scenes: Sequence[Scene], number: int, begin: BeginStep) -> bool:
+    scene = scenes[number]
+    # Another process may fill the same cache.
+    return begin("rendering") and (cache.holds(scene) or cache.make(scene) is not None)

@@ -1,0 +1,51 @@
+"""The digest of code: follows what the code does and what it imports, and nothing else."""
+
+from pathlib import Path
+
+import pytest
+
+from preshape import source_digest as module
+
+FILES = {
+    "sim/pictures.py": '"""Pictures."""\nfrom preshape.lens import focus\n\n\ndef draw():\n    return focus(1)\n',
+    "src/preshape/lens.py": "import numpy\nimport preshape.glass\n\n\ndef focus(x):\n    return x + 1\n",
+    "src/preshape/glass.py": "INDEX = 1.5\n",
+    "src/preshape/other.py": "X = 1\n",
+}
+
+
+@pytest.fixture
+def root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    for name, text in FILES.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    monkeypatch.setattr(module, "project_root", lambda: tmp_path)
+    return tmp_path
+
+
+def digest() -> str:
+    module.source_digest.cache_clear()
+    return module.source_digest("sim.pictures")
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "same"),
+    [
+        ("sim/pictures.py", "focus(1)", "focus(2)", False),
+        ("src/preshape/lens.py", "x + 1", "x + 2", False),
+        ("src/preshape/glass.py", "1.5", "1.6", False),
+        ("src/preshape/other.py", "1", "2", True),
+        ("sim/pictures.py", "Pictures.", "Fine pictures.", True),
+        ("src/preshape/glass.py", "INDEX = 1.5", "INDEX = (1.5)  # of crown glass", True),
+    ],
+)
+def test_the_digest_follows_the_code(root: Path, name: str, old: str, new: str, same: bool) -> None:
+    before = digest()
+    (root / name).write_text(FILES[name].replace(old, new))
+    assert (digest() == before) is same
+    module.source_digest.cache_clear()
+
+
+def test_the_real_renderer_and_perception_are_covered() -> None:
+    module.source_digest.cache_clear()
+    assert len({module.source_digest(name) for name in ("sim.scene_renderer", "preshape.data.images")}) == 2
