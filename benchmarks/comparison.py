@@ -1,4 +1,4 @@
-"""Two ways of doing the same, timed in turns."""
+"""Two ways of doing the same, timed side by side."""
 
 import statistics
 import time
@@ -17,7 +17,7 @@ class Comparison:
         name: what is done.
         peer_name: the other way.
         ours_s, peer_s: median seconds of one run.
-        ours_flop: floating point operations of one run of ours.
+        bound_s: seconds below which ours cannot come.
         runs: how often each was run.
     """
 
@@ -25,7 +25,7 @@ class Comparison:
     peer_name: str
     ours_s: float
     peer_s: float
-    ours_flop: int
+    bound_s: float
     runs: int
 
     def __str__(self) -> str:
@@ -36,9 +36,17 @@ class Comparison:
 
 
 def side_by_side(
-    name: str, ours: Callable[[], object], peer_name: str, peer: Callable[[], object], runs: int
+    name: str,
+    ours: Callable[[], object],
+    peer_name: str,
+    peer: Callable[[], object],
+    runs: int,
+    flop_per_s: float,
 ) -> Comparison:
-    """Time two functions in turns, after a first run of each, so that both meet the same disturbances."""
+    """Time two functions in turns, after a first run of each, so that both meet the same disturbances.
+
+    The bound is the time that the arithmetic of ours takes at the rate of large matrix products.
+    """
     with FlopCounterMode(display=False) as counter:
         ours()
     peer()
@@ -49,14 +57,14 @@ def side_by_side(
             function()
             seconds.append(time.perf_counter() - start)
     medians = [statistics.median(seconds) for seconds in times]
-    return Comparison(name, peer_name, *medians, ours_flop=counter.get_total_flops(), runs=runs)
+    return Comparison(name, peer_name, *medians, counter.get_total_flops() / flop_per_s, runs)
 
 
-def as_row(comparison: Comparison, flop_per_s: float) -> dict[str, Any]:
+def as_row(comparison: Comparison) -> dict[str, Any]:
     """The comparison as it stands in the result file.
 
-    `ratio` says how many times faster ours is; `bound_share` is the time that its arithmetic takes at the
-    rate of large matrix products, as a share of the time that it takes.
+    `ratio` says how many times faster ours is; `bound_share` is the bound as a share of the time that ours
+    takes.
     """
     return {
         "name": comparison.name,
@@ -65,6 +73,6 @@ def as_row(comparison: Comparison, flop_per_s: float) -> dict[str, Any]:
         "peer": 1e3 * comparison.peer_s,
         "peer_name": comparison.peer_name,
         "ratio": comparison.peer_s / comparison.ours_s,
-        "bound_share": comparison.ours_flop / flop_per_s / comparison.ours_s,
+        "bound_share": comparison.bound_s / comparison.ours_s,
         "runs": comparison.runs,
     }

@@ -32,7 +32,7 @@ class WholeNetwork(Objective):
         return Evaluation(logit, torch.zeros_like(logit))
 
 
-def features_once(seed: int) -> Comparison:
+def features_once(seed: int, flop_per_s: float) -> Comparison:
     """One plan from three initial grasps, image features included; the network need not be trained."""
     generator = torch.Generator().manual_seed(seed)
     torch.manual_seed(seed)
@@ -54,4 +54,5 @@ def features_once(seed: int) -> Comparison:
         "whole network for each grasp at every step",
         lambda: plan(WholeNetwork),
         RUNS,
+        flop_per_s,
     )

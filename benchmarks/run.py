@@ -4,6 +4,7 @@ import argparse
 import logging
 from pathlib import Path
 
+from collection_speed import collection
 from comparison import as_row
 from machine import describe_machine, matrix_product_rate
 from planning_speed import features_once
@@ -26,9 +27,9 @@ def main() -> None:
     rate = matrix_product_rate()
     log.info("Matrix products: %.1f GFLOP/s", rate / 1e9)
     rows = []
-    for compare in (features_once, channels_last_training):
-        comparison = compare(SEED)
-        rows.append(as_row(comparison, rate))
+    for compare in (features_once, channels_last_training, collection):
+        comparison = compare(SEED, rate)
+        rows.append(as_row(comparison))
         log.info("%s", comparison)
     machine = describe_machine() | {"matrix_product_gflop_per_s": rate / 1e9}
     write_json(output, provenance(SEED) | {"machine": machine, "rows": rows})

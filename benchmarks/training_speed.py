@@ -13,7 +13,7 @@ from preshape.models.config_cnn import ConfigCNN
 BATCH, RUNS = 8, 7
 
 
-def channels_last_training(seed: int) -> Comparison:
+def channels_last_training(seed: int, flop_per_s: float) -> Comparison:
     """Forward, backward and an Adam step on a batch of the paper's size."""
     generator = torch.Generator().manual_seed(seed)
     patch = torch.rand(BATCH, 8, PATCH_SIZE, PATCH_SIZE, generator=generator)
@@ -45,4 +45,5 @@ def channels_last_training(seed: int) -> Comparison:
         "channels first",
         step_of(channels_last=False),
         RUNS,
+        flop_per_s,
     )

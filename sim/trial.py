@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 from preshape.data.scene import Scene
 from preshape.data.trial import Face, Trial, TrialOutcome
 from preshape.geometry.pose import invert_pose, make_pose, transform_points
+from preshape.grasps.space import GraspSpace
 from sim.arm.planner import ArmPlanner
 from sim.arm.trajectory import GraspMotion, MotionFailure
 from sim.execution import Execution, ExecutionSettings, GraspExecutor, Spectator
@@ -75,6 +76,7 @@ class TrialSettings:
     disturbances: DisturbanceSettings = field(default_factory=DisturbanceSettings)
 
 
+@dataclass(frozen=True, eq=False)
 class TrialRunner:
     """Tries grasps, each in a fresh world.
 
@@ -85,21 +87,19 @@ class TrialRunner:
         settings: physics, controller and label.
     """
 
-    def __init__(
-        self,
-        robot: RobotDescription,
-        objects: ObjectSet,
-        table: TableSettings,
-        arm: ArmPlanner,
-        settings: TrialSettings,
-    ) -> None:
-        self._robot, self._space = robot, robot.grasp_space
-        self._objects, self._table = objects, table
-        self._arm, self._settings = arm, settings
+    robot: RobotDescription
+    objects: ObjectSet
+    table: TableSettings
+    arm: ArmPlanner
+    settings: TrialSettings
+
+    @property
+    def _space(self) -> GraspSpace:
+        return self.robot.grasp_space
 
     def run(self, scene: Scene, grasp: PlannedGrasp, spectator: Spectator | None = None) -> Trial:
         """Try one grasp; the same scene and grasp give the same trial to the bit, timings aside."""
-        model = self._objects.load(scene.object_id)
+        model = self.objects.load(scene.object_id)
         start = time.perf_counter()
         motion = self.plan_motion(scene, grasp, model)
         planned = time.perf_counter()
@@ -109,7 +109,7 @@ class TrialRunner:
         built = time.perf_counter()
         execution = self._execute(world, motion, grasp, spectator)
         done = time.perf_counter()
-        outcome = judge(execution.measured, self._settings.outcome)
+        outcome = judge(execution.measured, self.settings.outcome)
         times = {"planning_s": planned - start, "scene_s": built - planned, "physics_s": done - built}
         trial = self._row(scene, grasp, outcome, execution, **times)
         return replace(trial, soft_label=self._soft_label(scene, grasp, motion, model))
@@ -120,32 +120,31 @@ class TrialRunner:
         """The arm's motion to a planned grasp, or why there is none."""
         T_world_palm = scene.camera.T_world_camera @ self._space.palm_pose(grasp.planned)
         parts = tuple(transform_points(scene.T_world_object, part) for part in model.collision_parts)
-        preshape = self._robot.preshape(self._space.joints(grasp.planned))
-        return self._arm.plan_grasp(T_world_palm, preshape, parts, np.random.default_rng(grasp.seed))
+        preshape = self.robot.preshape(self._space.joints(grasp.planned))
+        return self.arm.plan_grasp(T_world_palm, preshape, parts, np.random.default_rng(grasp.seed))
 
     def _world(self, model: ObjectModel, pose: Float[np.ndarray, "4 4"], *, rendered: bool = False) -> World:
-        return World(self._table, self._settings.physics, model, pose, rendered=rendered).with_robot(
-            self._robot
-        )
+        world = World(self.table, self.settings.physics, model, pose, rendered=rendered)
+        return world.with_robot(self.robot)
 
     def _execute(
         self, world: World, motion: GraspMotion, grasp: PlannedGrasp, spectator: Spectator | None = None
     ) -> Execution:
-        executor = GraspExecutor(world, self._settings.physics, self._settings.execution, spectator)
-        preshape = self._robot.preshape(self._space.joints(grasp.planned))
+        executor = GraspExecutor(world, self.settings.physics, self.settings.execution, spectator)
+        preshape = self.robot.preshape(self._space.joints(grasp.planned))
         return executor.execute(motion, preshape, grasp.face.grasp_type)
 
     def _soft_label(
         self, scene: Scene, grasp: PlannedGrasp, motion: GraspMotion, model: ObjectModel
     ) -> float:
         """Share of the repetitions that end LIFTED; NaN if there are none."""
-        settings = self._settings.disturbances
+        settings = self.settings.disturbances
         rng = np.random.default_rng([grasp.seed, DISTURBANCE_STREAM])
         lifted = []
         for _ in range(settings.repeats):
             pose = _disturbed(scene.T_world_object, settings, rng)
             execution = self._execute(self._world(model, pose), motion, grasp)
-            lifted.append(judge(execution.measured, self._settings.outcome) is TrialOutcome.LIFTED)
+            lifted.append(judge(execution.measured, self.settings.outcome) is TrialOutcome.LIFTED)
         return float(np.mean(lifted)) if lifted else float("nan")
 
     def _row(
@@ -182,7 +181,7 @@ class TrialRunner:
         if execution is None:
             return np.full(self._space.dim, np.nan)
         T_camera_palm = invert_pose(scene.camera.T_world_camera) @ execution.T_world_palm
-        return self._space.theta(T_camera_palm, self._robot.preshape_joints(execution.hand))
+        return self._space.theta(T_camera_palm, self.robot.preshape_joints(execution.hand))
 
 
 def _disturbed(

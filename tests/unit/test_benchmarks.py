@@ -12,11 +12,13 @@ BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 
 def test_rows_have_the_agreed_keys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(BENCHMARKS))
+    import collection_speed
     import machine
     import planning_speed
     import run
     import training_speed
 
+    monkeypatch.setattr(collection_speed, "SCENES", 2)
     monkeypatch.setattr(machine, "SIZE", 64)
     monkeypatch.setattr(planning_speed, "ITERATIONS", 1)
     monkeypatch.setattr(planning_speed, "RUNS", 1)

@@ -1,6 +1,6 @@
 """A trial depends on its scene, grasp and seed alone, whoever looks on."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +15,7 @@ from preshape.geometry.pose import invert_pose, make_pose
 from preshape.paths import project_root
 from sim.laboratory import Laboratory
 from sim.recorder import Recorder, RecorderSettings
-from sim.trial import PlannedGrasp
+from sim.trial import DisturbanceSettings, PlannedGrasp, TrialRunner
 
 TIMINGS = {"scene_s", "planning_s", "physics_s", "rendering_s"}
 
@@ -73,6 +73,39 @@ def test_a_hand_that_closes_beside_the_object_misses_it(laboratory: Laboratory) 
     trial = laboratory.runner.run(scene, side_grasp(laboratory, scene, 0.25))
     assert trial.outcome is TrialOutcome.MISSED
     assert abs(trial.lift_height_m) < 0.01
+
+
+def with_settings(runner: TrialRunner, **changes: object) -> TrialRunner:
+    """The same runner but for some of its settings."""
+    settings = replace(runner.settings, **changes)
+    return TrialRunner(runner.robot, runner.objects, runner.table, runner.arm, settings)
+
+
+def test_a_lost_trial_ends_early_with_the_outcome_that_it_would_have_had(laboratory: Laboratory) -> None:
+    runner = laboratory.runner
+    patient = with_settings(runner, execution=replace(runner.settings.execution, lost_lag_m=None))
+    scene = scene_with(laboratory, "pringles_bbq")
+    for offset_m, outcome in ((0.068, TrialOutcome.LIFTED), (0.25, TrialOutcome.MISSED)):
+        grasp = side_grasp(laboratory, scene, offset_m)
+        film, whole_film = (Recorder(RecorderSettings(every=5)) for _ in range(2))
+        early, whole = runner.run(scene, grasp, film), patient.run(scene, grasp, whole_film)
+        assert early.outcome is whole.outcome is outcome
+        assert early.reached.tobytes() == whole.reached.tobytes()
+        lasts_as_long = len(film.frames) == len(whole_film.frames)
+        assert lasts_as_long is (outcome is TrialOutcome.LIFTED)
+
+
+def test_the_soft_label_is_the_share_of_lifted_repetitions(laboratory: Laboratory) -> None:
+    scene = scene_with(laboratory, "pringles_bbq")
+    sure = side_grasp(laboratory, scene, 0.068)
+    assert np.isnan(laboratory.runner.run(scene, sure).soft_label)
+    disturbed = with_settings(laboratory.runner, disturbances=DisturbanceSettings(repeats=2))
+    trial, again = disturbed.run(scene, sure), disturbed.run(scene, sure)
+    assert trial.outcome is TrialOutcome.LIFTED
+    assert trial.soft_label == again.soft_label == 1.0
+    assert disturbed.run(scene, side_grasp(laboratory, scene, 0.25)).soft_label == 0.0
+    hopeless = with_settings(laboratory.runner, disturbances=DisturbanceSettings(repeats=2, position_m=0.5))
+    assert hopeless.run(scene, sure).soft_label == 0.0
 
 
 def test_a_grasp_out_of_reach_is_recorded_without_being_executed(laboratory: Laboratory) -> None:
