@@ -19,10 +19,10 @@ log = logging.getLogger(__name__)
 @entry_point("collect")
 def main(cfg: DictConfig) -> None:
     """Collect until enough trials were executed, then write both tables."""
-    want = cfg.collect
+    want, cache, output = cfg.collect, cfg.paths.cache, Path(cfg.collect.output)
     settings = CollectionSettings(want.trials, want.seed, want.block, want.workers, want.scene_limit_s)
-    name = fingerprint(cfg.laboratory, instantiate(cfg.objects.set).fingerprint, want.seed, want.block)
-    parts, output = Path(cfg.paths.cache) / "collect" / name, Path(want.output)
+    decisive = (cfg.laboratory, instantiate(cfg.objects.set).fingerprint, want.seed, want.block)
+    parts = Path(cache) / "collect" / fingerprint(*decisive, cache=cache)
     OmegaConf.resolve(cfg.laboratory)  # worker processes may lack our resolvers
     finished = collect(partial(instantiate, cfg.laboratory), settings, parts)
     with one_at_a_time(parts / "table.lock", wait=cfg.shard is None) as my_turn:

@@ -23,8 +23,9 @@ def main(cfg: DictConfig) -> None:
     settings = instantiate(cfg.evaluate)
     origin, space = instantiate(cfg.laboratory.origin), instantiate(cfg.robot.grasp_space)
     decisive = {key: cfg.evaluate[key] for key in cfg.evaluate if key not in ("scenes", "workers")}
-    name = fingerprint(cfg.evaluator, OmegaConf.create(decisive), file_hash(cfg.weights))
-    parts = Path(cfg.paths.cache) / "evaluate" / name
+    cache = cfg.paths.cache
+    name = fingerprint(cfg.evaluator, OmegaConf.create(decisive), file_hash(cfg.weights), cache=cache)
+    parts = Path(cache) / "evaluate" / name
     output = Path(HydraConfig.get().runtime.output_dir)
     trials = evaluate(
         partial(instantiate, cfg.evaluator), origin, space, settings, parts=parts, output=output

@@ -24,16 +24,18 @@ PACKAGES = (
 """Packages whose change may change a trial."""
 
 
-def fingerprint(*parts: Any) -> str:
+def fingerprint(*parts: Any, cache: str) -> str:
     """Hash of configuration and values together with the code and packages that turn them into trials.
 
     Args:
         parts: configuration nodes, or anything that JSON can hold.
+        cache: the folder of derived files, whose place decides nothing.
     """
     plain = [
         OmegaConf.to_container(part, resolve=True) if isinstance(part, DictConfig) else part for part in parts
     ]
     text = json.dumps([plain, _source_digest(), {name: version(name) for name in PACKAGES}], sort_keys=True)
+    text = text.replace(json.dumps(cache)[1:-1], "cache")
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 

@@ -19,10 +19,9 @@ WANTED = ("collect.trials=8", "collect.workers=1", "collect.block=1")
 
 def collect_command(place: Path, *overrides: str) -> list[str]:
     return [
-        *(sys.executable, str(project_root() / "sim" / "collect.py")),
+        *(sys.executable, str(project_root() / "sim" / "collect.py"), *overrides),
         *(f"paths.{name}={place / name}" for name in ("cache", "outputs")),
         f"collect.output={place / 'table'}",
-        *overrides,
     ]
 
 
@@ -51,7 +50,7 @@ def test_the_table_holds_what_was_asked_for(undisturbed: Path, allegro_space: Gr
     scenes, trials = read_data_set(undisturbed / "table", allegro_space)
     assert len(trials.executed) >= 8
     assert set(trials.scene_ids) <= {scene.scene_id for scene in scenes.scenes}
-    assert set(trials.rows["planner"]) == {"heuristic"}
+    assert set(trials.rows["planner"]) == {"heuristic", "exploration"}
     assert [path.name for path in (undisturbed / "outputs" / "collect").iterdir()] == ["lbr4_allegro_grocery"]
 
 
