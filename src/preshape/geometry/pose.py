@@ -21,6 +21,18 @@ def make_pose(
     return pose
 
 
+def is_pose(matrix: Float[np.ndarray, "4 4"]) -> bool:
+    """Whether a matrix is a pose: a rotation, to a thousandth, with a translation."""
+    rotation = matrix[:3, :3]
+    return bool(
+        np.isfinite(matrix).all()
+        and np.abs(rotation).max() <= 1.01
+        and np.allclose(rotation.T @ rotation, np.eye(3), atol=1e-3)
+        and np.linalg.det(rotation) > 0
+        and np.allclose(matrix[3], [0.0, 0.0, 0.0, 1.0], rtol=0, atol=1e-9)
+    )
+
+
 def invert_pose(pose: Float[np.ndarray, "4 4"]) -> Float[np.ndarray, "4 4"]:
     """T_b_a from T_a_b."""
     rotation_inverse = pose[:3, :3].T

@@ -11,6 +11,7 @@ from jaxtyping import Float
 from preshape.errors import InputError
 from preshape.files import read_json, write_json
 from preshape.geometry.camera import Camera
+from preshape.geometry.pose import is_pose
 
 SIZES = ("width", "height")
 INTRINSICS = ("fx", "fy", "cx", "cy")
@@ -94,13 +95,7 @@ def _pose(path: Path, value: Any) -> Float[np.ndarray, "4 4"]:
     numbers = [_finite(entry) for row in rows if isinstance(row, list) and len(row) == 4 for entry in row]
     if len(rows) == 4 and len(numbers) == 16 and None not in numbers:
         pose = np.array(numbers, dtype=np.float64).reshape(4, 4)
-        rotation = pose[:3, :3]
-        if (
-            np.abs(rotation).max() <= 1.01
-            and np.allclose(rotation.T @ rotation, np.eye(3), atol=1e-3)
-            and np.linalg.det(rotation) > 0
-            and np.array_equal(pose[3], [0.0, 0.0, 0.0, 1.0])
-        ):
+        if is_pose(pose):
             return pose
     raise _bad(path, "needs a rotation and a translation as 4 rows of 4 numbers for T_world_camera")
 
