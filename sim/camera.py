@@ -8,6 +8,7 @@ from jaxtyping import Float32, Int, UInt8
 from sapien.render import RenderCameraComponent
 
 from preshape.geometry.camera import Camera
+from sim.lean_shaders import lean_shaders
 from sim.objects.actor import sapien_pose
 
 NEAR_M, FAR_M = 0.05, 30.0
@@ -31,7 +32,7 @@ def camera_looking_at(
 
 def add_camera(scene: sapien.Scene, camera: Camera) -> RenderCameraComponent:
     """Add a camera to a scene that can be looked at."""
-    lens = RenderCameraComponent(camera.width, camera.height)
+    lens = RenderCameraComponent(camera.width, camera.height, lean_shaders())
     # SAPIEN counts from the image's corner, half a pixel before the first pixel's centre.
     lens.set_perspective_parameters(
         NEAR_M, FAR_M, camera.fx, camera.fy, camera.cx + 0.5, camera.cy + 0.5, 0.0

@@ -26,7 +26,7 @@ def has_renderer(scene: sapien.Scene) -> bool:
 def make_render_system() -> RenderSystem:
     """What makes a scene visible; every scene needs its own.
 
-    The first one of a process compiles the shaders, at its first picture, which takes some 10 s on a CPU.
+    The first one of a process compiles the shaders, at its first picture, which takes some 2 s on a CPU.
 
     Raises:
         InputError: if the machine has no Vulkan device that SAPIEN can use.
