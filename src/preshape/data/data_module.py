@@ -13,7 +13,7 @@ from preshape.data.folds import HoldOut, split_trials
 from preshape.data.grasp_dataset import GraspBatch, GraspDataset
 from preshape.data.images import PatchCache
 from preshape.data.tables import data_hash, read_data_set
-from preshape.data.trial_table import TableOrigin
+from preshape.data.trial_table import TableOrigin, TrialTable
 from preshape.errors import InputError
 from preshape.grasps.space import GraspSpace
 
@@ -45,6 +45,7 @@ class GraspDataModule(lightning.LightningDataModule):
         patches: makes and keeps the patches of the scenes.
         hold_out: which trials are held out.
         batches: how the others are drawn.
+        trials: how many executed trials are used, from the first of the table on; None for all.
     """
 
     train: GraspDataset
@@ -61,11 +62,12 @@ class GraspDataModule(lightning.LightningDataModule):
         patches: PatchCache,
         hold_out: HoldOut,
         batches: BatchSettings,
+        trials: int | None = None,
     ) -> None:
         super().__init__()
         self._folder, self._origin, self._space = Path(folder), origin, space
         self._patches = patches
-        self._hold_out, self.batches = hold_out, batches
+        self._hold_out, self.batches, self._wanted = hold_out, batches, trials
 
     def setup(self, stage: str | None = None) -> None:
         """Read the tables, render what is not rendered yet, and split; does nothing the second time.
@@ -83,7 +85,7 @@ class GraspDataModule(lightning.LightningDataModule):
                 where=self._folder,
                 fix=f"choose {_choices(trials.origin)}, or another dataset",
             )
-        executed = trials.executed
+        executed = self._first(trials.executed)
         split = split_trials(executed, self._hold_out)
         self._patches.fill([scenes.by_id[scene_id] for scene_id in np.unique(executed.scene_ids).tolist()])
 
@@ -93,6 +95,18 @@ class GraspDataModule(lightning.LightningDataModule):
 
         self.train, self.validation, self.test = part(split.train), part(split.validation), part(split.test)
         self.data_hash = data_hash(self._folder)
+
+    def _first(self, executed: TrialTable) -> TrialTable:
+        """The trials that are used of all executed ones."""
+        if self._wanted is None:
+            return executed
+        if not 0 < self._wanted <= len(executed):
+            raise InputError(
+                f"{self._wanted} trials are wanted, but the table has {len(executed)} executed ones",
+                where=self._folder,
+                fix="set dataset.data.trials to at most as many, or to null for all",
+            )
+        return executed.where(np.arange(len(executed)) < self._wanted)
 
     def train_dataloader(self) -> DataLoader[GraspBatch]:
         """Random batches with enough positives."""

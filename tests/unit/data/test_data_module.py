@@ -24,7 +24,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def make_module(folder: Path, origin: TableOrigin = ORIGIN) -> GraspDataModule:
+def make_module(folder: Path, origin: TableOrigin = ORIGIN, trials: int | None = None) -> GraspDataModule:
     return GraspDataModule(
         folder=folder,
         origin=origin,
@@ -32,6 +32,7 @@ def make_module(folder: Path, origin: TableOrigin = ORIGIN) -> GraspDataModule:
         patches=PatchCache(folder / "cache", BoxRenderer()),
         hold_out=HoldOut("scenes", fold=0, validation_fraction=0.25, seed=0),
         batches=BatchSettings(batch_size=4, min_positives=1, batches_per_epoch=5, seed=0),
+        trials=trials,
     )
 
 
@@ -46,6 +47,19 @@ def test_executed_trials_become_batches_of_what_was_reached(folder: Path) -> Non
         assert batch.label.sum() >= 1
         rows = [int((known == theta).all(dim=1).nonzero()) for theta in batch.theta]
         assert batch.label.bool().tolist() == executed.lifted[rows].tolist()
+
+
+def test_the_first_trials_are_used_if_fewer_are_wanted(folder: Path) -> None:
+    executed = read_trials(folder / "trials.parquet", allegro_space()).executed
+    wanted = len(executed) - 5
+    data = make_module(folder, trials=wanted)
+    data.setup()
+    used = {
+        trial for part in (data.train, data.validation, data.test) for trial in part.trials.rows["trial_id"]
+    }
+    assert used == set(executed.rows["trial_id"][:wanted])
+    with pytest.raises(InputError, match="executed ones"):
+        make_module(folder, trials=len(executed) + 1).setup()
 
 
 def test_every_grasp_comes_with_the_patch_of_its_own_scene(folder: Path) -> None:
