@@ -3,6 +3,7 @@
 from dataclasses import asdict, dataclass
 
 import numpy as np
+from jaxtyping import Bool
 
 from preshape.data.trial_table import TrialTable
 from preshape.evaluation.intervals import wilson
@@ -25,7 +26,12 @@ class LiftRate:
 
 def lift_rate(trials: TrialTable) -> LiftRate:
     """Rate over a table; trials that were not executed do not count."""
-    executed, lifted = len(trials.executed), int(trials.lifted.sum())
+    return rate_of(trials.executed.lifted)
+
+
+def rate_of(labels: Bool[np.ndarray, "n"]) -> LiftRate:
+    """Rate over the labels of executed trials."""
+    executed, lifted = len(labels), int(labels.sum())
     return LiftRate(executed, lifted, lifted / executed if executed else np.nan, *wilson(lifted, executed))
 
 
