@@ -5,8 +5,8 @@ import torch
 from comparison import Comparison, side_by_side
 from torch import Tensor
 
-from preshape.data.images import PATCH_SIZE
 from preshape.models.config_cnn import ConfigCNN
+from preshape.perception.patch import PATCH_SIZE
 from preshape.planning.bounds import Bounds
 from preshape.planning.gradient_ascent import GradientAscent
 from preshape.planning.line_search import LineSearch

@@ -8,6 +8,7 @@ from collection_speed import collection
 from comparison import as_row
 from machine import describe_machine, matrix_product_rate
 from planning_speed import features_once
+from rendering_speed import rendering
 from training_speed import channels_last_training
 
 from preshape.files import write_json
@@ -27,7 +28,7 @@ def main() -> None:
     rate = matrix_product_rate()
     log.info("Matrix products: %.1f GFLOP/s", rate / 1e9)
     rows = []
-    for compare in (features_once, channels_last_training, collection):
+    for compare in (features_once, channels_last_training, collection, rendering):
         comparison = compare(SEED, rate)
         rows.append(as_row(comparison))
         log.info("%s", comparison)

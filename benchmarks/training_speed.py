@@ -7,8 +7,8 @@ from comparison import Comparison, side_by_side
 from torch import Tensor
 from torch.nn.functional import binary_cross_entropy_with_logits
 
-from preshape.data.images import PATCH_SIZE
 from preshape.models.config_cnn import ConfigCNN
+from preshape.perception.patch import PATCH_SIZE
 
 BATCH, RUNS = 8, 7
 
