@@ -10,7 +10,7 @@ from pathlib import Path
 from preshape.data.trial import TrialOutcome
 from preshape.errors import InputError
 from sim.finished_scenes import FinishedScene
-from sim.finishing import GuardedRunner, WorkerSettings, finish_scenes
+from sim.finishing import Effort, GuardedRunner, WorkerSettings, finish_scenes
 from sim.laboratory import Laboratory, LaboratoryFactory
 from sim.scene_claims import SceneClaims
 from sim.scene_trials import try_grasps
@@ -62,7 +62,9 @@ class ExecutedTrials:
         return sum(trial.outcome.executed for trial in finished.trials)
 
 
-def collect(factory: LaboratoryFactory, settings: CollectionSettings, parts: Path) -> Iterator[FinishedScene]:
+def collect(
+    factory: LaboratoryFactory, settings: CollectionSettings, parts: Path
+) -> tuple[Iterator[FinishedScene], Effort]:
     """Collect trials scene by scene until enough were executed in the scenes from the first on.
 
     Every finished scene is kept under `parts`. A second start goes on from there, and several processes, here
@@ -75,7 +77,7 @@ def collect(factory: LaboratoryFactory, settings: CollectionSettings, parts: Pat
         parts: folder of finished scenes; must belong to this configuration, seed and block size alone.
 
     Returns:
-        The finished scenes in the order of their numbers.
+        The finished scenes in the order of their numbers, and what it took to get them.
 
     Raises:
         InputError: if hardly any trial can be executed, or nothing can be written to `parts`.
@@ -83,14 +85,14 @@ def collect(factory: LaboratoryFactory, settings: CollectionSettings, parts: Pat
     limit = int(settings.trials * settings.max_scenes_per_trial) + 10
     claims = SceneClaims(parts, settings.block, limit, ExecutedTrials(settings.trials))
     workers = WorkerSettings(settings.workers, settings.scene_limit_s)
-    finish_scenes("Collecting", partial(_scene_worker, factory, settings.seed), claims, workers)
+    effort = finish_scenes("Collecting", partial(_scene_worker, factory, settings.seed), claims, workers)
     if claims.exhausted:
         raise InputError(
             f"Only {claims.counted} of {settings.trials} trials could be executed in {limit} scenes",
             where=parts,
             fix="check that the objects are of a size and in a place that the robot can reach",
         )
-    return claims.finished()
+    return claims.finished(), effort
 
 
 @contextmanager

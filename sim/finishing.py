@@ -37,6 +37,26 @@ class WorkerSettings:
     scene_limit_s: float = 300.0
 
 
+@dataclass(frozen=True)
+class Effort:
+    """What working on scenes took.
+
+    Args:
+        units: what was finished meanwhile, in the units of the goal, by everyone who works in the folder.
+        seconds: wall-clock seconds, the workers' start included.
+        workers: worker processes of this one.
+    """
+
+    units: int
+    seconds: float
+    workers: int
+
+    @property
+    def per_hour(self) -> float:
+        """Units finished in an hour."""
+        return 3600 * self.units / self.seconds
+
+
 class TrialRunning(Protocol):
     """Tries grasps, as `sim.trial.TrialRunner` does."""
 
@@ -85,7 +105,7 @@ def finish_scenes(
     build: Callable[[], Work[int, FinishedScene]],
     claims: SceneClaims,
     settings: WorkerSettings,
-) -> None:
+) -> Effort:
     """Work on scenes until those that are needed are finished, or no more may be tried.
 
     Args:
@@ -94,9 +114,13 @@ def finish_scenes(
         claims: the scenes.
         settings: who does the work.
 
+    Returns:
+        What it took.
+
     Raises:
         InputError: if a scene cannot be kept, or workers do not start.
     """
+    start, there = time.monotonic(), claims.counted
     with (
         closing(claims),
         Progress(what, claims.goal.wanted, claims.goal.unit, done=claims.counted) as progress,
@@ -118,3 +142,4 @@ def finish_scenes(
                 claims.look()
                 looked = time.monotonic()
             progress.advance(claims.counted - before, claims.goal.note)
+        return Effort(claims.counted - there, time.monotonic() - start, workers.count)

@@ -10,6 +10,7 @@ import psutil
 import pytest
 
 from preshape.data.tables import read_data_set
+from preshape.files import read_json
 from preshape.grasps.space import GraspSpace
 from preshape.paths import project_root
 from sim.crashes import differing_rows
@@ -51,6 +52,9 @@ def test_the_table_holds_what_was_asked_for(undisturbed: Path, allegro_space: Gr
     assert len(trials.executed) >= 8
     assert set(trials.scene_ids) <= {scene.scene_id for scene in scenes.scenes}
     assert set(trials.rows["planner"]) == {"heuristic", "exploration"}
+    effort = read_json(undisturbed / "outputs" / "collect" / "lbr4_allegro_grocery" / "collection.json")
+    assert effort["executed"] >= 8
+    assert effort["executed_per_hour"] == pytest.approx(3600 * effort["executed"] / effort["seconds"])
     assert [path.name for path in (undisturbed / "outputs" / "collect").iterdir()] == ["lbr4_allegro_grocery"]
 
 
