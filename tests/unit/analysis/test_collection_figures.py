@@ -8,7 +8,7 @@ from analysis.collection_figures import ABOUT_TRIALS, CollectionFigures
 from preshape.errors import InputError
 from preshape.files import read_json, write_json
 
-DATASET = {name: 0.5 for name in ABOUT_TRIALS} | {"executed": 40, "lifted": 20, "objects": 5}
+DATASET = dict.fromkeys(ABOUT_TRIALS, 0.5) | {"executed": 40, "lifted": 20, "objects": 5}
 VARIANTS = {"unchanged": {"n": 20, "flips": 0}, "no_early_stop": {"n": 50, "flips": 1}}
 FILES = {
     "dataset": {"data": "abc", "seed": 3, **DATASET},
