@@ -1,16 +1,15 @@
 """Collecting labelled grasps: scenes in parallel, every scene safe on disk as soon as it is done."""
 
-import fcntl
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 from preshape.data.trial import TrialOutcome
 from preshape.errors import InputError
+from sim.effort import Effort
 from sim.finished_scenes import FinishedScene
-from sim.finishing import Effort, GuardedRunner, WorkerSettings, finish_scenes
+from sim.finishing import GuardedRunner, WorkerSettings, finish_scenes
 from sim.laboratory import Laboratory, LaboratoryFactory
 from sim.scene_claims import SceneClaims
 from sim.scene_trials import try_grasps
@@ -93,23 +92,6 @@ def collect(
             fix="check that the objects are of a size and in a place that the robot can reach",
         )
     return claims.finished(), effort
-
-
-@contextmanager
-def one_at_a_time(lock: Path, *, wait: bool) -> Iterator[bool]:
-    """Keep other processes out of the body.
-
-    Args:
-        lock: the file that they all lock.
-        wait: whether to wait for them. Otherwise the body is told False if one of them is in it.
-    """
-    with lock.open("a") as handle:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            yield False
-        else:
-            yield True
 
 
 def _scene_worker(factory: LaboratoryFactory, run_seed: int) -> Work[int, FinishedScene]:

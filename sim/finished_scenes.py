@@ -80,7 +80,7 @@ class SceneBlock:
         try:
             lines = self.path.read_bytes().splitlines() if self.path.exists() else []
         except OSError as error:
-            raise _refusal("read", self.path, error) from error
+            raise refusal("read", self.path, error) from error
         contents = [content for content in map(_unseal, lines) if content is not None]
         owners = [content["owner"] for content in contents if "owner" in content]
         scenes = [_to_finished(content) for content in contents if "scene_id" in content]
@@ -110,7 +110,7 @@ class SceneBlock:
             return False
         except OSError as error:
             self.release()
-            raise _refusal("written", self.path, error) from error
+            raise refusal("written", self.path, error) from error
         return True
 
     def add(self, finished: FinishedScene) -> None:
@@ -122,7 +122,7 @@ class SceneBlock:
         try:
             self._write(_seal(_from_finished(finished)))
         except OSError as error:
-            raise _refusal("written", self.path, error) from error
+            raise refusal("written", self.path, error) from error
 
     def release(self) -> None:
         """Let another process claim the block."""
@@ -201,7 +201,14 @@ def _arrays(row: dict[str, Any]) -> dict[str, Any]:
     return {name: np.array(value) if isinstance(value, list) else value for name, value in row.items()}
 
 
-def _refusal(what: str, path: Path, error: OSError) -> InputError:
+def refusal(what: str, path: Path, error: OSError) -> InputError:
+    """What to tell the user if the place of finished scenes cannot be used.
+
+    Args:
+        what: what cannot be done: `read`, `written`.
+        path: the file.
+        error: what the operating system said.
+    """
     return InputError(
         f"The finished scenes cannot be {what}: {error.strerror or error}",
         where=path,

@@ -61,9 +61,10 @@ class SceneClaims:
         self._mine: dict[int, SceneBlock] = {}
         self._to_do: deque[int] = deque()
         self._told: set[str] = set()
+        there = {path.name for path in folder.glob("*.jsonl")}
         for number in range(math.ceil(limit / block_size)):
             block = self._block(number)
-            if block.path.exists():
+            if block.path.name in there:
                 self._note(block.read().finished)
 
     @property

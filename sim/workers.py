@@ -9,12 +9,15 @@ import time
 import traceback
 from collections import Counter, defaultdict
 from collections.abc import Callable, Hashable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from types import TracebackType
 from typing import Any, Generic, TypeVar
+
+import psutil
 
 from preshape.errors import InputError, bad_input_behind
 
@@ -31,6 +34,8 @@ ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "LP_NUM_THREADS"), "1"
 )
 TRIES = 2
+PATIENCE = 10
+"""How much longer than its processor time a job may take on the clock, since others may keep the cores."""
 PR_SET_PDEATHSIG = 1
 
 log = logging.getLogger(__name__)
@@ -50,7 +55,29 @@ class _Worker:
     job: Any = None
     step: Hashable = None
     ready: bool = False
+    begun_s: float = 0.0
+    begun_processor_s: float = 0.0
     deadline: float = float("inf")
+
+    def begin(self, limit_s: float) -> None:
+        """Start the clocks of a job."""
+        self.begun_s, self.begun_processor_s = time.monotonic(), self._processor_s()
+        self.deadline = self.begun_s + limit_s
+
+    def is_stuck(self, limit_s: float) -> bool:
+        """Whether the job needs too long; if not, asks to be looked at again when it could."""
+        elapsed_s = time.monotonic() - self.begun_s
+        used_s = self._processor_s() - self.begun_processor_s
+        if used_s >= limit_s or elapsed_s >= PATIENCE * limit_s:
+            return True
+        self.deadline = time.monotonic() + max(limit_s - used_s, 0.1)
+        return False
+
+    def _processor_s(self) -> float:
+        with suppress(psutil.Error):  # a worker that just died is found out elsewhere
+            times = psutil.Process(self.process.pid).cpu_times()
+            return float(times.user + times.system)
+        return self.begun_processor_s
 
     def kill(self) -> None:
         self.process.kill()
@@ -69,7 +96,8 @@ class Workers(Generic[Job, Result]):
     Args:
         build: makes the function that does a job; called once in each process. It and the jobs are pickled.
         count: number of processes; None takes every core.
-        time_limit_s: longest time that a job may take, without what `build` takes (s).
+        time_limit_s: most processor time that a job may take, without what `build` takes (s); on the clock
+            ten times as long.
     """
 
     def __init__(
@@ -109,7 +137,8 @@ class Workers(Generic[Job, Result]):
             worker.kill()
             worker = self._start()
         worker.job, worker.step = job, None
-        worker.deadline = time.monotonic() + self._limit_s if worker.ready else float("inf")
+        if worker.ready:
+            worker.begin(self._limit_s)
         self._busy.append(worker)
         try:
             worker.connection.send((job, frozenset(self._left_out[job])))
@@ -130,8 +159,8 @@ class Workers(Generic[Job, Result]):
         for worker in list(self._busy):
             if worker.connection in heard:
                 done += self._receive(worker)
-            elif time.monotonic() > worker.deadline:
-                done += self._replace(worker, f"needed more than {self._limit_s:g} s")
+            elif time.monotonic() > worker.deadline and worker.is_stuck(self._limit_s):
+                done += self._replace(worker, f"needed more than {self._limit_s:g} s of processor time")
         return done
 
     def _start(self) -> _Worker:
@@ -157,7 +186,7 @@ class Workers(Generic[Job, Result]):
             return [(worker.job, content)]
         if kind == "ready":
             worker.ready, self._failed_starts = True, 0
-            worker.deadline = time.monotonic() + self._limit_s
+            worker.begin(self._limit_s)
         else:
             worker.step = content
         return []

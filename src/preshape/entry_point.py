@@ -31,8 +31,12 @@ def entry_point(config_name: str) -> Callable[[Callable[[DictConfig], None]], Ca
     """
 
     def decorate(main: Callable[[DictConfig], None]) -> Callable[[], None]:
+        begun = False
+
         @wraps(main)
         def job(cfg: DictConfig) -> None:
+            nonlocal begun
+            begun = True
             _run_job(main, cfg)
 
         @wraps(main)
@@ -46,6 +50,12 @@ def entry_point(config_name: str) -> Callable[[Callable[[DictConfig], None]], Ca
                 _refuse(str(error))
             except (ConfigCompositionException, OverrideParseException) as error:
                 _refuse(_misuse(error))
+            except OSError as error:
+                if begun or error.filename is None:
+                    raise
+                problem = f"The folder of the run cannot be made: {error.strerror}"
+                fix = "choose another place with paths.outputs=DIR"
+                _refuse(str(InputError(problem, where=error.filename, fix=fix)))
             except (KeyboardInterrupt, SystemExit) as end:
                 # Lightning answers an interrupt with an exit of its own
                 if isinstance(end, SystemExit) and not isinstance(end.__context__, KeyboardInterrupt):

@@ -110,6 +110,15 @@ def test_misuse_ends_with_one_message_and_status_2(run, overrides: list[str], me
     assert len(refused.stderr.splitlines()) < 12
 
 
+@pytest.mark.parametrize("sweep", [[], ["--multirun"]])
+def test_outputs_that_cannot_be_written_are_refused(run, tmp_path, sweep: list[str]) -> None:
+    (tmp_path / "file").touch()
+    refused = run(*sweep, f"paths.outputs={tmp_path / 'file' / 'outputs'}")
+    assert refused.returncode == 2, refused.stderr
+    assert "paths.outputs=DIR" in refused.stderr
+    assert "Traceback" not in refused.stderr
+
+
 def test_misuse_in_a_parallel_sweep_ends_with_status_2(run) -> None:
     refused = run("--multirun", "hydra/launcher=joblib", "hydra.launcher.n_jobs=2", "part.size=1,9")
     assert refused.returncode == 2, refused.stderr

@@ -60,12 +60,17 @@ def test_a_job_whose_worker_died_is_done_by_another(tmp_path: Path) -> None:
     assert (tmp_path / "died").exists()
 
 
+def turn_for_ever() -> None:
+    while True:
+        pass
+
+
 def fail_in_step_1(how: str, number: int, begin: BeginStep) -> list[int]:
     done = []
     for step in range(3):
         if begin(step):
             if number == 7 and step == 1:
-                time.sleep(60) if how == "hang" else os.abort()
+                turn_for_ever() if how == "hang" else os.abort()
             done.append(step)
     return done
 
@@ -76,13 +81,13 @@ def test_a_step_in_which_two_workers_failed_is_left_out(how: str) -> None:
     assert done == {6: [0, 1, 2], 7: [0, 2], 8: [0, 1, 2]}
 
 
-def hang(number: int, begin: BeginStep) -> int:
-    time.sleep(60 if number else 0)
+def wait_for(number: int, begin: BeginStep) -> int:
+    time.sleep(number)
     return number
 
 
-def test_a_job_that_never_comes_to_a_step_is_given_up() -> None:
-    assert results(partial(always, hang), [0, 1], time_limit_s=0.5) == {0: 0, 1: None}
+def test_a_job_that_does_nothing_is_given_up_later_than_one_that_works() -> None:
+    assert results(partial(always, wait_for), [1, 60], time_limit_s=0.3) == {1: 1, 60: None}
 
 
 def refuse() -> Work[int, int]:
@@ -114,14 +119,14 @@ def test_workers_that_cannot_start_are_refused() -> None:
 PARENT = """
 from functools import partial
 from sim.workers import Workers
-from test_workers import always, hang
+from test_workers import always, wait_for
 
 if __name__ == "__main__":
-    with Workers(partial(always, hang), 1, 60.0) as workers:
+    with Workers(partial(always, wait_for), 1, 60.0) as workers:
         workers.give(0)
         while not workers.wait(1.0):
             pass
-        workers.give(1)
+        workers.give(60)
         print("hangs", flush=True)
         workers.wait(60.0)
 """
