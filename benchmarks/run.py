@@ -29,9 +29,8 @@ def main() -> None:
     log.info("Matrix products: %.1f GFLOP/s", rate / 1e9)
     rows = []
     for compare in (features_once, channels_last_training, collection, rendering):
-        comparison = compare(SEED, rate)
+        log.info("%s", comparison := compare(SEED, rate))
         rows.append(as_row(comparison))
-        log.info("%s", comparison)
     machine = describe_machine() | {"matrix_product_gflop_per_s": rate / 1e9}
     write_json(output, provenance(SEED) | {"machine": machine, "rows": rows})
     log.info("%d comparisons: %s", len(rows), output)

@@ -12,6 +12,7 @@ import numpy as np
 from preshape.data.scene import Scene
 from preshape.data.trial import Trial, TrialOutcome
 from preshape.progress import Progress
+from sim.effort import Effort
 from sim.execution import Spectator
 from sim.finished_scenes import FinishedScene
 from sim.scene_claims import SceneClaims
@@ -35,26 +36,6 @@ class WorkerSettings:
 
     count: int | None = None
     scene_limit_s: float = 300.0
-
-
-@dataclass(frozen=True)
-class Effort:
-    """What working on scenes took.
-
-    Args:
-        units: what was finished meanwhile, in the units of the goal, by everyone who works in the folder.
-        seconds: wall-clock seconds, the workers' start included.
-        workers: worker processes of this one.
-    """
-
-    units: int
-    seconds: float
-    workers: int
-
-    @property
-    def per_hour(self) -> float:
-        """Units finished in an hour."""
-        return 3600 * self.units / self.seconds
 
 
 class TrialRunning(Protocol):
