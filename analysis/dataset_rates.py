@@ -61,7 +61,7 @@ def binned_rates(grasps: pd.DataFrame, column: str, bins: int) -> list[RateBin]:
 def gridded_counts(
     grasps: pd.DataFrame, columns: tuple[str, str], edges: Float[np.ndarray, "e"]
 ) -> Float[np.ndarray, "2 c c"]:
-    """Lifted and executed grasps in the cells of a square grid; the first column runs along the first axis."""
+    """Lifted and executed grasps in the cells of a square grid; the first column is the first axis."""
     executed = grasps[grasps["executed"]]
     x, y = (executed[column].to_numpy(dtype=float) for column in columns)
     lifted = np.histogram2d(x, y, bins=(edges, edges), weights=executed["lifted"].to_numpy(dtype=float))[0]
