@@ -1,20 +1,16 @@
 """How well predicted success probabilities tell grasps that lift from grasps that fail."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-import torch
 from jaxtyping import Bool, Float, Int
-from sklearn.metrics import accuracy_score, average_precision_score, brier_score_loss, f1_score, roc_auc_score
-from torchmetrics.functional.classification import binary_calibration_error
+from sklearn.metrics import average_precision_score, brier_score_loss, roc_auc_score
 
+from preshape.evaluation.calibration import reliability_diagram
+from preshape.evaluation.decisions import PAPER_THRESHOLD, decision_metrics
 from preshape.evaluation.intervals import bootstrap_auc
-
-PAPER_THRESHOLD = 0.4
-"""Success probability above which a grasp counts as predicted to succeed (paper, section 4.2)."""
-CALIBRATION_BINS = 10
 
 
 @dataclass(frozen=True)
@@ -42,6 +38,17 @@ class ClassificationMetrics:
     brier: float
     ece: float
     threshold: float
+
+    def summary(self) -> str:
+        """The most telling figures in words."""
+        return (
+            f"AUC {self.auc:.3f} [{self.auc_low:.3f}, {self.auc_high:.3f}] on {self.n} held-out trials, "
+            f"{self.positives} of them lifted"
+        )
+
+    def scalars(self) -> dict[str, float]:
+        """The figures by their names, each a number."""
+        return {name: float(value) for name, value in asdict(self).items()}
 
     def to_dict(self) -> dict[str, Any]:
         """The figures as they stand in result files, the AUC with its interval as `{value, low, high}`."""
@@ -75,12 +82,9 @@ def classification_metrics(
         groups: scene of each trial, resampled as a whole.
         threshold: success probability above which success is predicted.
     """
-    predicted = success_prob > threshold
     both_classes = bool(labels.any() and not labels.all())
     low, high = bootstrap_auc(labels, success_prob, rng, groups=groups)
-    ece = binary_calibration_error(
-        torch.as_tensor(success_prob), torch.as_tensor(labels).int(), n_bins=CALIBRATION_BINS, norm="l1"
-    )
+    decisions = decision_metrics(labels, success_prob, threshold)
     return ClassificationMetrics(
         n=len(labels),
         positives=int(labels.sum()),
@@ -90,9 +94,9 @@ def classification_metrics(
         average_precision=float(average_precision_score(labels, success_prob))
         if labels.any()
         else float("nan"),
-        accuracy=float(accuracy_score(labels, predicted)),
-        f1=float(f1_score(labels, predicted, zero_division=0.0)),
+        accuracy=decisions.accuracy,
+        f1=decisions.f1,
         brier=float(brier_score_loss(labels, success_prob, pos_label=True)),
-        ece=float(ece),
+        ece=reliability_diagram(labels, success_prob).expected_error,
         threshold=threshold,
     )
