@@ -9,7 +9,7 @@ from pathlib import Path
 from preshape.data.tables import write_data_set
 from preshape.data.trial_table import TableOrigin
 from preshape.grasps.space import GraspSpace
-from sim.finished_scenes import FinishedScene, to_tables
+from sim.finished_scenes import FinishedScene, refusal, to_tables
 
 log = logging.getLogger(__name__)
 
