@@ -1,4 +1,4 @@
-"""Convex parts of any mesh: as given where it consists of such, else by CoACD, remembered on disk.
+"""Convex parts of any mesh: as given where it consists of such, else closed and cut by CoACD, kept on disk.
 
 Wei et al., "Approximate Convex Decomposition for 3D Meshes with Collision-Aware Concavity and Tree Search",
 SIGGRAPH 2022.
@@ -13,6 +13,7 @@ from pathlib import Path
 
 import coacd
 import numpy as np
+import open3d as o3d
 import trimesh
 from jaxtyping import Float
 from scipy.spatial import ConvexHull, QhullError
@@ -25,6 +26,8 @@ MOST_VERTICES = 128
 """PhysX takes convex hulls of at most 255 faces, which 128 vertices never exceed."""
 MOST_TESTED_FACES = 300
 """Of finer meshes an even sample of the faces is tested for convexity, which scans fail at once."""
+MOST_DECOMPOSED_FACES = 5_000
+"""Finer meshes are thinned to this before CoACD, which takes minutes for the 100,000 faces of a scan."""
 CONVEX_TOLERANCE = 0.02
 """A piece is convex if no face lies deeper in its hull than this share of its size."""
 
@@ -49,14 +52,14 @@ def convex_parts(
 ) -> tuple[Float[np.ndarray, "_ 3"], ...]:
     """Vertices (m) of convex parts that fill the meshes.
 
-    Meshes whose connected pieces are all convex keep them as they are; others are decomposed, and the result
-    is kept in the folder `cache`, which anyone may delete.
+    Meshes whose connected pieces are all convex keep them as they are; others are closed and decomposed, and
+    the result is kept in the folder `cache`, which anyone may delete.
     """
     pieces = [piece for mesh in meshes for piece in _connected_pieces(mesh)]
     if pieces and all(_is_convex(piece) for piece in pieces):
         parts = [np.asarray(piece.vertices) for piece in pieces]
     else:
-        parts = _cached_decomposition(_welded(trimesh.util.concatenate(list(meshes))), settings, cache)
+        parts = _cached_decomposition(_closed(trimesh.util.concatenate(list(meshes))), settings, cache)
     return tuple(_few_vertices(part) for part in parts)
 
 
@@ -67,6 +70,24 @@ def _welded(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
     surface.update_faces(surface.nondegenerate_faces())
     surface.remove_unreferenced_vertices()
     return surface
+
+
+def _closed(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+    """The welded surface, thinned, its holes filled: CoACD would take an open one for a thin shell."""
+    surface = _welded(mesh)
+    if surface.is_watertight and len(surface.faces) <= MOST_DECOMPOSED_FACES:
+        return surface
+    # Each step's result may lie in the memory of the one before, so all are kept until the copy at the end.
+    scan = o3d.t.geometry.TriangleMesh(
+        o3d.core.Tensor(np.asarray(surface.vertices)), o3d.core.Tensor(np.asarray(surface.faces))
+    )
+    filled = scan.fill_holes()
+    excess = 1 - MOST_DECOMPOSED_FACES / len(filled.triangle.indices)
+    thinned = filled.simplify_quadric_decimation(excess) if excess > 0 else filled
+    vertices, faces = thinned.vertex.positions.numpy().copy(), thinned.triangle.indices.numpy().copy()
+    closed = _welded(trimesh.Trimesh(vertices, faces, process=False))
+    trimesh.repair.fix_normals(closed)
+    return closed
 
 
 def _connected_pieces(mesh: trimesh.Trimesh) -> list[trimesh.Trimesh]:

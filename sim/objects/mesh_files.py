@@ -1,6 +1,7 @@
 """Reading triangle meshes of any common format, as they are: no repair, no network, no code."""
 
 import logging
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from jaxtyping import UInt8
 from PIL import Image
 
 from preshape.errors import InputError
+from preshape.perception.view_files import BROKEN_IMAGE
 from sim.objects.colour import LinearColour, linear_rgb
 from sim.objects.object_model import VisualPart
 from sim.objects.shading import painted_part, shaded_part, textured_part, two_sided
@@ -43,10 +45,13 @@ def read_mesh_file(path: Path) -> list[trimesh.Trimesh]:
     try:
         scene = trimesh.load_scene(path, process=False, allow_remote=False, **groups)
         meshes = [mesh for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)]
+        _load_textures(meshes)
     except Exception as error:  # a broken file surfaces as whatever its reader trips over
         raise _unusable(f"The mesh cannot be read ({error})", path) from error
     if not meshes:
         raise _unusable("The mesh holds no triangles", path)
+    if sum(len(mesh.faces) for mesh in meshes) < _declared_faces(path):
+        raise _unusable("The mesh is truncated: it has fewer faces than its header says", path)
     if not all(np.isfinite(mesh.triangles).all() for mesh in meshes):
         raise _unusable("The mesh has corners that are not finite", path)
     return meshes
@@ -94,7 +99,7 @@ def mean_colour(path: Path) -> LinearColour:
     try:
         with Image.open(path) as image:
             pixels = np.asarray(image.convert("RGB").resize((64, 64))).reshape(-1, 3)
-    except (OSError, Image.DecompressionBombError) as error:
+    except BROKEN_IMAGE as error:
         raise InputError("The texture cannot be read", where=path, fix="replace the image") from error
     used = pixels[pixels.sum(axis=1) > 0]
     return linear_rgb(used.mean(axis=0) if len(used) else np.zeros(3))
@@ -104,6 +109,23 @@ def _is_closed(mesh: trimesh.Trimesh) -> bool:
     surface = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
     surface.merge_vertices()
     return bool(surface.is_volume)
+
+
+def _declared_faces(path: Path) -> int:
+    """Number of faces of which the header of a PLY speaks, or 0; trimesh reads a shorter text for whole."""
+    if path.suffix.lower() != ".ply":
+        return 0
+    header = path.read_bytes().partition(b"end_header")[0]
+    declared = re.search(rb"^element face (\d+)", header, re.MULTILINE)
+    return int(declared[1]) if declared else 0
+
+
+def _load_textures(meshes: Sequence[trimesh.Trimesh]) -> None:
+    """Decode what Pillow has only opened so far, so that a damaged image shows now."""
+    for mesh in meshes:
+        image = _texture(mesh.visual.material) if mesh.visual.kind == "texture" else None
+        if image is not None:
+            image.load()
 
 
 def _texture(material: Any) -> Image.Image | None:

@@ -79,14 +79,19 @@ class MeshFolder:
 
     @cached_property
     def fingerprint(self) -> str:
-        """Hash of the settings and of all files beside which an object lies."""
+        """Hash of the settings and of all files that the models depend on."""
         settings = (self.scale, self.density, self.friction, astuple(self.convex))
         digest = hashlib.sha256(repr(settings).encode())
-        for folder in sorted({path.parent for path in self.files.values()}):
-            for path in sorted(path for path in folder.iterdir() if path.is_file()):
-                digest.update(str(path.relative_to(self.root)).encode())
-                digest.update(hashlib.sha256(path.read_bytes()).digest())
+        for path in self.sources:
+            digest.update(str(path.relative_to(self.root)).encode())
+            digest.update(hashlib.sha256(path.read_bytes()).digest())
         return digest.hexdigest()
+
+    @property
+    def sources(self) -> list[Path]:
+        """The files that the models may depend on: all beside which an object lies."""
+        folders = sorted({path.parent for path in self.files.values()})
+        return [path for folder in folders for path in sorted(folder.iterdir()) if path.is_file()]
 
     @cached_property
     def files(self) -> dict[str, Path]:
@@ -122,6 +127,13 @@ class MeshFolder:
             )
         return _build(self, name)
 
+    def shape(self, name: str) -> UrdfObject:
+        """The meshes of one object; raises `InputError` if its URDF cannot be read."""
+        path = self.files[name]
+        if path.suffix.lower() == URDF_SUFFIX:
+            return read_object_urdf(path)
+        return UrdfObject(None, (bare_mesh(path),), (bare_mesh(path),))
+
     def _object_name(self, path: Path, *, alone: bool) -> str:
         if path.parent == self.root:
             return path.stem
@@ -132,14 +144,18 @@ class MeshFolder:
         return InputError(what, where=self.root, fix=fix)
 
 
+def bare_mesh(path: Path) -> UrdfMesh:
+    """A mesh file as if a URDF named it."""
+    return UrdfMesh(path, np.ones(3), np.eye(4), None)
+
+
 @cache
 def _build(folder: MeshFolder, name: str) -> ObjectModel:
-    path = folder.files[name]
-    urdf = read_object_urdf(path) if path.suffix.lower() == URDF_SUFFIX else _bare_mesh(path)
+    urdf = folder.shape(name)
     collisions, visuals = _shapes_that_exist(urdf)
     solids = [part for mesh in collisions for part in _placed(mesh, folder.scale)]
     parts = convex_parts(solids, folder.convex, folder.cache)
-    colour = _folder_colour(path.parent)
+    colour = _texture_colour([folder.files[name].parent, *(mesh.path.parent for mesh in visuals)])
     looks = tuple(
         visual_part(part, colour or mesh.colour or GREY)
         for mesh in visuals
@@ -183,15 +199,9 @@ def _stand_in(missing: UrdfMesh, urdf: UrdfObject) -> UrdfMesh | None:
     return replace(missing, path=chosen)
 
 
-def _bare_mesh(path: Path) -> UrdfObject:
-    """A mesh file as if a URDF named it."""
-    mesh = UrdfMesh(path, np.ones(3), np.eye(4), None)
-    return UrdfObject(None, (mesh,), (mesh,))
-
-
-def _folder_colour(folder: Path) -> LinearColour | None:
+def _texture_colour(folders: Sequence[Path]) -> LinearColour | None:
     """Mean colour of the texture beside an object, for meshes that cannot carry it; None without one."""
-    images = _files_with(folder, IMAGE_SUFFIXES)
+    images = [image for folder in folders for image in _files_with(folder, IMAGE_SUFFIXES)]
     return mean_colour(images[0]) if images else None
 
 

@@ -49,8 +49,11 @@ EXPERIMENT = "experiment"
 
 @pytest.fixture(scope="module")
 def mesh_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One box, for objects=mesh_folder and for objects=bigbird."""
     folder = tmp_path_factory.mktemp("meshes")
-    trimesh.creation.box((0.05, 0.06, 0.1)).export(folder / "box.obj")
+    (folder / "box" / "meshes").mkdir(parents=True)
+    for path in (folder / "box.obj", folder / "box" / "meshes" / "poisson.ply"):
+        trimesh.creation.box((0.05, 0.06, 0.1)).export(path)
     return folder
 
 
