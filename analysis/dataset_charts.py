@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from analysis.dataset_grasps import GRASP_TYPES
 from analysis.dataset_rates import RateBin, binned_rates, gridded_counts
@@ -26,27 +27,28 @@ OUTCOME_FILLS = {
     "unstable": {"color": "#ffffff", "hatch": "xxxx"},
 }
 """Executed outcomes come first."""
+Groups = Sequence[tuple[str, Mapping[str, LiftRate]]]
+"""Headings, each with the rates that stand under it."""
 BINS = 8
 GRID_M = np.linspace(-0.1, 0.1, 6)
+"""Edges of the cells on the table."""
 
 
-def rate_rows(groups: Sequence[tuple[str, Mapping[str, LiftRate]]], columns: int, width_in: float) -> Figure:
-    """A row for each name with its rate, interval and number; names stand in groups, groups in columns.
+def rate_rows(sides: Sequence[Groups], width_in: float) -> Figure:
+    """A row for each name with its rate, interval and number.
 
     Args:
-        groups: (heading, name -> rate).
-        columns: columns of rows side by side.
+        sides: columns of groups; a group has a heading, and a rate for each name.
         width_in: width of the figure (inches).
     """
-    sides = _split(groups, columns)
     longest = max(sum(len(rates) + 1 for _, rates in side) for side in sides)
     figure = Figure(figsize=(width_in, 0.135 * longest + 0.7), layout="constrained")
-    for axes, side in zip(figure.subplots(1, columns, squeeze=False)[0], sides, strict=True):
+    for axes, side in zip(figure.subplots(1, len(sides), squeeze=False)[0], sides, strict=True):
         _draw_rows(axes, side, longest)
     return figure
 
 
-def _draw_rows(axes: Axes, groups: Sequence[tuple[str, Mapping[str, LiftRate]]], longest: int) -> None:
+def _draw_rows(axes: Axes, groups: Groups, longest: int) -> None:
     y, ticks, labels = 0, [], []
     for heading, rates in groups:
         axes.text(-0.02, y, heading, ha="right", va="center", fontsize=7, fontweight="bold")
@@ -69,13 +71,11 @@ def _draw_rows(axes: Axes, groups: Sequence[tuple[str, Mapping[str, LiftRate]]],
     axes.spines[["left", "right"]].set_visible(False)
 
 
-def _split(
-    groups: Sequence[tuple[str, Mapping[str, LiftRate]]], columns: int
-) -> list[list[tuple[str, Mapping[str, LiftRate]]]]:
+def in_columns(groups: Groups, columns: int) -> list[Groups]:
     """The groups in columns of about equal length; a group that does not fit goes on in the next."""
     lines = [(heading, name, rate) for heading, rates in groups for name, rate in rates.items()]
     length = -(-len(lines) // columns)
-    sides = []
+    sides: list[Groups] = []
     for start in range(0, columns * length, length):
         side: dict[str, dict[str, LiftRate]] = {}
         for heading, name, rate in lines[start : start + length]:
@@ -123,6 +123,7 @@ def rates_over(grasps: pd.DataFrame, columns: Mapping[str, str], across: int) ->
         axes.set_xlabel(name, fontsize=8)
         axes.set_ylim(0, 1)
         axes.tick_params(labelsize=7)
+        axes.xaxis.set_major_locator(MaxNLocator(5))
         axes.grid(color="#e3e3e3", linewidth=0.6)
     for axes in panels[len(columns) :]:
         axes.set_visible(False)
@@ -138,7 +139,7 @@ def _draw_bins(axes: Axes, bins: Sequence[RateBin], grasp_type: str) -> None:
     rates = np.array([entry.rate.rate for entry in bins])
     low, high = (np.array([getattr(entry.rate, name) for entry in bins]) for name in ("low", "high"))
     axes.errorbar(
-        [entry.middle for entry in bins],
+        [entry.mean for entry in bins],
         rates,
         yerr=np.maximum(0, (rates - low, high - rates)),
         label=f"{grasp_type} grasps",
@@ -160,15 +161,16 @@ def table_maps(grasps: pd.DataFrame) -> Figure:
     for axes, (title, part, whole) in zip(figure.subplots(1, 2), pairs, strict=True):
         share = np.divide(part, whole, out=np.full_like(part, np.nan), where=whole > 0)
         extent = (GRID_M[0], GRID_M[-1], GRID_M[0], GRID_M[-1])
-        axes.imshow(share.T, origin="lower", extent=extent, cmap="cividis", vmin=0, vmax=1)
+        image = axes.imshow(share.T, origin="lower", extent=extent, cmap="cividis")
         middles = (GRID_M[:-1] + GRID_M[1:]) / 2
         for (i, j), value in np.ndenumerate(share):
             text = f"{100 * value:.0f} %\n{whole[i, j]:.0f}" if whole[i, j] else "–"
-            colour = "white" if not value > 0.5 else "black"
+            colour = "black" if image.norm(value) > 0.5 else "white"
             axes.text(middles[i], middles[j], text, ha="center", va="center", fontsize=7, color=colour)
         axes.set_title(title, fontsize=10)
         axes.set(xlabel="x (m), away from the robot", ylabel="y (m)")
-        axes.tick_params(labelsize=8)
+        axes.set_xticks(GRID_M[::2])
+        axes.set_yticks(GRID_M[::2])
     return figure
 
 

@@ -27,8 +27,8 @@ def grasp_frame(scenes: SceneTable, trials: TrialTable, families: dict[str, str]
         family, grasp_type: of the object, of the face.
         object_x_m, object_y_m: the object's origin on the table, from the middle of all of them (world).
         centre_x_m, centre_y_m, centre_z_m: the object's origin in the frame of the planned palm.
-        shift_m, tilt_rad: how far the planned palm is moved and turned from the heuristic one of the same
-            scene and face; NaN for the heuristic ones themselves, and where there is none.
+        shift_m, tilt_rad: how far the planned palm is moved, and its normal tilted, from the heuristic one of
+            the same scene and face; NaN for the heuristic ones themselves, and where there is none.
         one for each preshape joint of the grasp space (rad).
 
     Args:
@@ -91,6 +91,6 @@ def _strayed(
         j = reference.get(key)
         if j is None or heuristic[i]:
             continue
-        cosine = (np.trace(rotations[j].T @ rotations[i]) - 1) / 2
+        cosine = rotations[j][:, 0] @ rotations[i][:, 0]
         strayed[i] = np.linalg.norm(positions[i] - positions[j]), np.arccos(np.clip(cosine, -1, 1))
     return strayed

@@ -16,17 +16,14 @@ class RateBin:
 
     Args:
         low, high: the range.
+        mean: mean of the numbers in it.
         rate: its lifted and executed grasps.
     """
 
     low: float
     high: float
+    mean: float
     rate: LiftRate
-
-    @property
-    def middle(self) -> float:
-        """Middle of the range."""
-        return (self.low + self.high) / 2
 
 
 def rates_by(grasps: pd.DataFrame, columns: str | Sequence[str]) -> dict[str, LiftRate]:
@@ -52,10 +49,13 @@ def binned_rates(grasps: pd.DataFrame, column: str, bins: int) -> list[RateBin]:
         return []
     edges = np.unique(np.quantile(values, np.linspace(0, 1, bins + 1)))
     places = _places(values, edges)
-    return [
-        RateBin(float(edges[k]), float(edges[min(k + 1, len(edges) - 1)]), rate_of(labels[places == k]))
-        for k in range(max(1, len(edges) - 1))
-    ]
+    bins = []
+    for k in range(max(1, len(edges) - 1)):
+        own = places == k
+        if own.any():  # few numbers may leave a range empty
+            low, high = float(edges[k]), float(edges[min(k + 1, len(edges) - 1)])
+            bins.append(RateBin(low, high, float(values[own].mean()), rate_of(labels[own])))
+    return bins
 
 
 def gridded_counts(

@@ -27,7 +27,7 @@ PALM_AXES = {
     "centre_y_m": "object to the thumb's side (m)",
     "centre_z_m": "object along the fingers (m)",
     "shift_m": "palm shifted (m)",
-    "tilt_rad": "palm turned (rad)",
+    "tilt_rad": "palm tilted (rad)",
 }
 PICTURES = {
     "objects": "Lift rate of each object by shape family, with 95 % Wilson intervals",
@@ -99,8 +99,8 @@ class DatasetReport:
         joints = {name: f"{plain_name(name)} (rad)" for name in self.space.joint_names}
         moving = {name: text for name, text in joints.items() if grasps[name].nunique() > 1}
         drawn = (
-            charts.rate_rows(objects, columns=2, width_in=11),
-            charts.rate_rows(types, columns=2, width_in=9),
+            charts.rate_rows(charts.in_columns(objects, 2), width_in=11),
+            charts.rate_rows([[group] for group in types], width_in=9),
             charts.outcome_bars(grasps, ["planner", "face"]),
             charts.rates_over(grasps, moving, across=4),
             charts.rates_over(grasps, PALM_AXES, across=3),
