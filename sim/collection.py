@@ -25,7 +25,7 @@ class CollectionSettings:
         seed: seed of the run; with the number of a trial it decides everything random in it.
         block: number of consecutive scenes that a process claims at a time.
         workers: number of worker processes; None takes every core.
-        scene_limit_s: a worker that needs longer for a scene is taken for stuck, and replaced (s).
+        scene_limit_s: a worker that needs more processor time for a scene is taken for stuck (s).
         max_scenes_per_trial: gives up after this many scenes per executed trial wanted.
     """
 

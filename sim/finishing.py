@@ -31,7 +31,7 @@ class WorkerSettings:
 
     Args:
         count: number of worker processes; None takes every core.
-        scene_limit_s: a worker that needs longer for a scene is taken for stuck, and replaced (s).
+        scene_limit_s: a worker that needs more processor time for a scene is taken for stuck (s).
     """
 
     count: int | None = None
