@@ -150,5 +150,6 @@ def _drawn(
 
 def _patch(observation: Observation) -> np.ndarray:
     """The patch around the object that the network sees."""
-    centre = object_centre(segment(observation, SegmentationSettings()), observation.camera)
+    segmented = segment(observation, SegmentationSettings())
+    centre = object_centre(segmented.T_camera_box, observation.camera)
     return object_patch(observation, centre)

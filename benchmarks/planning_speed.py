@@ -7,6 +7,7 @@ from torch import Tensor
 
 from preshape.models.config_cnn import ConfigCNN
 from preshape.perception.patch import PATCH_SIZE
+from preshape.perception.view_batch import ViewBatch
 from preshape.planning.bounds import Bounds
 from preshape.planning.gradient_ascent import GradientAscent
 from preshape.planning.line_search import LineSearch
@@ -19,15 +20,15 @@ STARTS, ITERATIONS, RUNS = 3, 100, 3
 class WholeNetwork(Objective):
     """The same objective, with the image channel run again at every evaluation, in all threads."""
 
-    def __init__(self, model: ConfigCNN, patch: Tensor) -> None:
-        self._model, self._patch = model.eval(), patch[None]
+    def __init__(self, model: ConfigCNN, view: ViewBatch) -> None:
+        self._model, self._view = model.eval(), view
         self._threads = torch.get_num_threads()
 
     def evaluate(self, theta: Tensor) -> Evaluation:
         planning_threads = torch.get_num_threads()
         torch.set_num_threads(self._threads)
-        patches = self._patch.expand(len(theta), -1, -1, -1)
-        logit = self._model(patches, theta.float()).double()
+        views = ViewBatch(*(part.expand(len(theta), *part.shape[1:]) for part in self._view))
+        logit = self._model(views, theta.float()).double()
         torch.set_num_threads(planning_threads)
         return Evaluation(logit, torch.zeros_like(logit))
 
@@ -37,13 +38,13 @@ def features_once(seed: int, flop_per_s: float) -> Comparison:
     generator = torch.Generator().manual_seed(seed)
     torch.manual_seed(seed)
     model = ConfigCNN("config_cnn", "benchmark", 14)
-    patch = torch.rand(8, PATCH_SIZE, PATCH_SIZE, generator=generator)
+    view = ViewBatch(torch.rand(1, 8, PATCH_SIZE, PATCH_SIZE, generator=generator), torch.ones(1, 4))
     initial = torch.randn(STARTS, 14, generator=generator, dtype=torch.float64).numpy()
     bounds = Bounds(initial - 1.0, initial + 1.0)
     planner = GradientAscent(LineSearch(first_step=0.001), step_unit="raw", max_iterations=ITERATIONS)
 
     def plan(objective: type[SuccessObjective] | type[WholeNetwork]) -> PlanResult:
-        return planner.plan(objective(model, patch), initial, bounds)
+        return planner.plan(objective(model, view), initial, bounds)
 
     ours, peer = plan(SuccessObjective), plan(WholeNetwork)
     if not np.allclose(ours.log_posterior, peer.log_posterior, atol=1e-4):

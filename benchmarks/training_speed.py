@@ -9,6 +9,7 @@ from torch.nn.functional import binary_cross_entropy_with_logits
 
 from preshape.models.config_cnn import ConfigCNN
 from preshape.perception.patch import PATCH_SIZE
+from preshape.perception.view_batch import ViewBatch
 
 BATCH, RUNS = 8, 7
 
@@ -17,6 +18,7 @@ def channels_last_training(seed: int, flop_per_s: float) -> Comparison:
     """Forward, backward and an Adam step on a batch of the paper's size."""
     generator = torch.Generator().manual_seed(seed)
     patch = torch.rand(BATCH, 8, PATCH_SIZE, PATCH_SIZE, generator=generator)
+    view = ViewBatch(patch, torch.ones(BATCH, 4))
     theta = torch.randn(BATCH, 14, generator=generator)
     label = torch.arange(BATCH).remainder(2).float()
 
@@ -29,7 +31,7 @@ def channels_last_training(seed: int, flop_per_s: float) -> Comparison:
 
         def logits() -> Tensor:
             if channels_last:
-                return model(patch, theta)
+                return model(view, theta)
             return model.head(model.image_channel(model.normalize_patch(patch)), theta)
 
         def step() -> None:

@@ -27,12 +27,7 @@ def main(cfg: DictConfig) -> None:
     config = OmegaConf.to_container(cfg, resolve=True)
     with instantiate(cfg.tracking).run(cfg.run_name, config, {"git_revision": git_revision()}) as run:
         result = train(model, data, settings, folder, run)
-    metrics = result.metrics
-    log.info(
-        "%s: AUC %.3f [%.3f, %.3f] on %d held-out trials, %d of them lifted; weights: %s",
-        *(cfg.run_name, metrics.auc, metrics.auc_low, metrics.auc_high),
-        *(metrics.n, metrics.positives, result.weights),
-    )
+    log.info("%s: %s; weights: %s", cfg.run_name, result.metrics.summary(), result.weights)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from torch import Tensor
 
 from preshape.errors import InputError
 from preshape.files import atomic_path, read_json, write_json
-from preshape.models.success_model import SuccessModel
+from preshape.models.success_model import GraspNetwork
 
 WEIGHTS_VERSION = 1
 """Version of the pair of files; raised whenever old ones could be misread."""
@@ -54,7 +54,7 @@ def sidecar_path(weights: str | Path) -> Path:
 
 def save_weights(
     path: str | Path,
-    model: SuccessModel,
+    model: GraspNetwork,
     *,
     data_hash: str,
     git_revision: str,
@@ -82,7 +82,7 @@ def save_weights(
     return sidecar
 
 
-def load_weights(path: str | Path, model: SuccessModel) -> Sidecar:
+def load_weights(path: str | Path, model: GraspNetwork) -> Sidecar:
     """Put weights into the network that the configuration built, and switch it to evaluation.
 
     Returns:
@@ -155,7 +155,7 @@ def _parse(content: bytes, path: Path) -> dict[str, Tensor]:
     return tensors
 
 
-def _check_tensors(tensors: Mapping[str, Tensor], model: SuccessModel, path: Path) -> None:
+def _check_tensors(tensors: Mapping[str, Tensor], model: GraspNetwork, path: Path) -> None:
     expected = {name: (tensor.shape, tensor.dtype) for name, tensor in model.state_dict().items()}
     found = {name: (tensor.shape, tensor.dtype) for name, tensor in tensors.items()}
     if expected != found:

@@ -1,11 +1,11 @@
-"""Training a success network and measuring it on held-out trials."""
+"""Training a network and measuring it on held-out trials."""
 
 import hashlib
 import logging
 import warnings
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import lightning
 import numpy as np
@@ -18,12 +18,14 @@ from preshape.checkpoints import save_weights, sidecar_path
 from preshape.data.data_module import GraspDataModule
 from preshape.data.grasp_dataset import GraspBatch
 from preshape.data.trial_table import TrialTable
+from preshape.evaluation.grasp_errors import GraspErrors, grasp_errors
 from preshape.evaluation.metrics import ClassificationMetrics, classification_metrics
 from preshape.evaluation.roc import save_roc
 from preshape.files import atomic_path, write_json
 from preshape.models.callbacks import KeepBest, Resumable, ShowProgress, TrackCurves
-from preshape.models.lightning_module import GraspLightningModule, LearningSettings
-from preshape.models.success_model import SuccessModel
+from preshape.models.lightning_module import LearningSettings, learning_of
+from preshape.models.regression_cnn import RegressionCNN
+from preshape.models.success_model import GraspNetwork, SuccessModel
 from preshape.provenance import git_revision, provenance
 from preshape.tracking import TrackedRun
 
@@ -59,18 +61,19 @@ class TrainingResult:
         weights: file of the trained weights.
     """
 
-    metrics: ClassificationMetrics
+    metrics: ClassificationMetrics | GraspErrors
     weights: Path
 
 
 def train(
-    model: SuccessModel, data: GraspDataModule, settings: TrainerSettings, folder: Path, run: TrackedRun
+    model: GraspNetwork, data: GraspDataModule, settings: TrainerSettings, folder: Path, run: TrackedRun
 ) -> TrainingResult:
     """Fit a network to the training trials and measure it on the test trials.
 
     A training that was interrupted goes on where it was, if it is started again with the same settings, data
-    and folder. Everything is written at the end: weights with sidecar, predictions, ROC picture, and last the
-    metrics.
+    and folder. Everything is written at the end: weights with sidecar, predictions, the ROC picture of a
+    network that predicts success, and last the metrics. The regression network learns from grasps that lifted
+    alone, and is measured on such.
 
     Args:
         model: the network with its initial weights.
@@ -83,6 +86,8 @@ def train(
         InputError: if the data cannot be used or the files cannot be written.
     """
     data.setup()
+    if isinstance(model, RegressionCNN):
+        data.keep_lifted()
     model.fit_statistics(data.train.patches(), data.train.theta)
     unfinished = folder / f"unfinished-{_identity(model, data, settings)}.ckpt"
     _fit(model, data, settings, unfinished, run)
@@ -97,12 +102,12 @@ def predict(model: SuccessModel, loader: DataLoader[GraspBatch]) -> Float64[np.n
     model.eval()
     device = next(model.parameters()).device
     with torch.inference_mode():
-        logits = [model(batch.patch.to(device), batch.theta.to(device)) for batch in loader]
+        logits = [model(batch.view.to(device), batch.theta.to(device)) for batch in loader]
     return torch.sigmoid(torch.cat(logits).double()).cpu().numpy()
 
 
 def _fit(
-    model: SuccessModel, data: GraspDataModule, settings: TrainerSettings, unfinished: Path, run: TrackedRun
+    model: GraspNetwork, data: GraspDataModule, settings: TrainerSettings, unfinished: Path, run: TrackedRun
 ) -> None:
     _quieten_lightning()
     validated = len(data.validation) > 0
@@ -129,7 +134,7 @@ def _fit(
         log.info("Going on with the training that was interrupted: %s", unfinished)
     try:
         trainer.fit(
-            GraspLightningModule(model, settings.learning),
+            learning_of(model, settings.learning),
             datamodule=data,
             ckpt_path=unfinished if going_on else None,
             weights_only=True,
@@ -141,35 +146,58 @@ def _fit(
 
 
 def _measure(
-    model: SuccessModel, data: GraspDataModule, settings: LearningSettings, folder: Path, run: TrackedRun
+    model: GraspNetwork, data: GraspDataModule, settings: LearningSettings, folder: Path, run: TrackedRun
 ) -> TrainingResult:
     """Metrics on the test trials; writes and keeps all files, the metrics last."""
     seed = settings.seed
+    metrics: ClassificationMetrics | GraspErrors
+    if isinstance(model, RegressionCNN):
+        metrics = _measure_grasps(model, data, folder)
+    else:
+        assert isinstance(model, SuccessModel)
+        metrics = _measure_success(model, data, seed, folder)
+    weights = folder / WEIGHTS_FILE
+    save_weights(
+        weights, model, data_hash=data.data_hash, git_revision=git_revision(), metrics=metrics.to_dict()
+    )
+    write_json(folder / "metrics.json", {**provenance(seed), "model": model.name, **metrics.to_dict()})
+    run.log({f"test_{name}": value for name, value in metrics.scalars().items()}, settings.iterations)
+    for file in (weights, sidecar_path(weights), *(folder / name for name in REPORT_FILES)):
+        if file.is_file():
+            run.keep(file)
+    return TrainingResult(metrics, weights)
+
+
+def _measure_success(
+    model: SuccessModel, data: GraspDataModule, seed: int, folder: Path
+) -> ClassificationMetrics:
     trials = data.test.trials
     success_prob = predict(model, data.test_dataloader())
     metrics = classification_metrics(
         trials.lifted, success_prob, rng=np.random.default_rng(seed), groups=trials.scene_ids
     )
-    weights = folder / WEIGHTS_FILE
-    save_weights(
-        weights, model, data_hash=data.data_hash, git_revision=git_revision(), metrics=metrics.to_dict()
-    )
-    _save_predictions(folder / "predictions.parquet", trials, success_prob)
+    _save_predictions(folder, trials, lifted=trials.lifted, success_prob=success_prob)
     save_roc(folder / "roc.png", trials.lifted, success_prob, metrics)
-    write_json(folder / "metrics.json", {**provenance(seed), "model": model.name, **metrics.to_dict()})
-    run.log({f"test_{name}": float(value) for name, value in asdict(metrics).items()}, settings.iterations)
-    for file in (weights, sidecar_path(weights), *(folder / name for name in REPORT_FILES)):
-        run.keep(file)
-    return TrainingResult(metrics, weights)
+    return metrics
 
 
-def _save_predictions(path: Path, trials: TrialTable, success_prob: Float64[np.ndarray, "n"]) -> None:
-    columns = trials.rows[["trial_id", "scene_id", "object_id"]]
-    with atomic_path(path) as temporary:
-        columns.assign(lifted=trials.lifted, success_prob=success_prob).to_parquet(temporary, index=False)
+def _measure_grasps(model: RegressionCNN, data: GraspDataModule, folder: Path) -> GraspErrors:
+    model.eval()
+    device = next(model.parameters()).device
+    with torch.inference_mode():
+        predicted = [model(batch.view.to(device)).double().cpu().numpy() for batch in data.test_dataloader()]
+    theta = np.concatenate(predicted)
+    _save_predictions(folder, data.test.trials, theta_predicted=list(theta))
+    return grasp_errors(theta, data.test.trials.reached)
 
 
-def _identity(model: SuccessModel, data: GraspDataModule, settings: TrainerSettings) -> str:
+def _save_predictions(folder: Path, trials: TrialTable, **predictions: Any) -> None:
+    columns = trials.rows[["trial_id", "scene_id", "object_id"]].assign(**predictions)
+    with atomic_path(folder / "predictions.parquet") as temporary:
+        columns.to_parquet(temporary, index=False)
+
+
+def _identity(model: GraspNetwork, data: GraspDataModule, settings: TrainerSettings) -> str:
     """Digest of all that decides the weights: initial weights, statistics, settings, data."""
     digest = hashlib.sha256(save({name: value.contiguous() for name, value in model.state_dict().items()}))
     digest.update(repr((settings, data.batches, data.data_hash)).encode())

@@ -108,6 +108,22 @@ class GraspDataModule(lightning.LightningDataModule):
             )
         return executed.where(np.arange(len(executed)) < self._wanted)
 
+    def keep_lifted(self) -> None:
+        """Leave out the trials that failed, for networks that learn from successes alone.
+
+        Raises:
+            InputError: if none is left to learn from, or to test with.
+        """
+        self.train, self.validation, self.test = (
+            part.lifted() for part in (self.train, self.validation, self.test)
+        )
+        if not len(self.train) or not len(self.test):
+            raise InputError(
+                "No grasp lifted its object among those to learn from, or among those to test with",
+                where=self._folder,
+                fix="collect more trials with `python sim/collect.py`",
+            )
+
     def train_dataloader(self) -> DataLoader[GraspBatch]:
         """Random batches with enough positives."""
         settings = self.batches

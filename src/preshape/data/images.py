@@ -10,13 +10,12 @@ from pathlib import Path
 from typing import Protocol
 
 import numpy as np
-from jaxtyping import Float16
 
 from preshape.data.bounded_folder import BoundedFolder
 from preshape.data.patch_files import TYPICAL_BYTES, decode, encode
 from preshape.data.scene import Scene, SceneRenderer
 from preshape.errors import InputError
-from preshape.perception.patch import object_centre, object_patch
+from preshape.perception.patch import ObjectPatch, object_centre, object_patch
 from preshape.perception.segmentation import SegmentationSettings, segment
 from preshape.progress import Progress
 from preshape.source_digest import source_digest
@@ -81,19 +80,19 @@ class PatchCache:
                 for _ in self._maker(self, missing):
                     progress.advance()
 
-    def make(self, scene: Scene) -> Float16[np.ndarray, "8 400 400"]:
+    def make(self, scene: Scene) -> ObjectPatch:
         """Render the patch of a scene and write it.
 
         Raises:
             InputError: if no object can be made out in the scene, or the cache cannot be written to.
         """
         observation = self._renderer(scene)
-        centre = object_centre(segment(observation, self._segmentation), observation.camera)
-        patch = object_patch(observation, centre)
-        self._files.write(self._name(scene), encode(patch))
-        return patch.astype(np.float16)
+        T_camera_box = segment(observation, self._segmentation).T_camera_box
+        channels = object_patch(observation, object_centre(T_camera_box, observation.camera))
+        self._files.write(self._name(scene), encode(ObjectPatch(channels, T_camera_box)))
+        return ObjectPatch(channels.astype(np.float16), T_camera_box)
 
-    def __getitem__(self, scene: Scene) -> Float16[np.ndarray, "8 400 400"]:
+    def __getitem__(self, scene: Scene) -> ObjectPatch:
         """The patch of a scene, which is made if its file is missing or damaged."""
         content = self._files.read(self._name(scene))
         patch = None if content is None else decode(content)

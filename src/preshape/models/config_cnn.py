@@ -4,7 +4,11 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from preshape.models.success_model import IMAGE_CHANNELS, SuccessModel
+from preshape.hands.kinematics import HandKinematics
+from preshape.models.success_model import IMAGE_CHANNELS, SuccessModel, xavier_weights
+from preshape.perception.grasp_patches import cut_patches
+from preshape.perception.hand_projection import HandProjection
+from preshape.perception.view_batch import ViewBatch
 
 
 class ConfigCNN(SuccessModel):
@@ -13,13 +17,27 @@ class ConfigCNN(SuccessModel):
     The feature map shrinks 400 -> 100 -> 50 -> 25 in the image channel m and 25 -> 13 -> 7 in the joint
     channel k; all convolutions pad so that a stride s divides the size by s, rounded up.
 
+    The patch is either fixed on the object, or it moves with the palm: centred where the palm appears,
+    upright, and cut from the object's patch, beyond which it is 0. Then theta changes the image as well, and
+    a gradient has both terms of the paper's equation 4.
+
     Args:
-        name, grasp_space, theta_dim: see `SuccessModel`.
+        name, grasp_space, theta_dim: see `GraspNetwork`.
         keep_prob: probability with which dropout keeps a unit of the fully connected layers.
+        hand: kinematics of the hand with whose palm the patch moves; None if it is fixed on the object.
     """
 
-    def __init__(self, name: str, grasp_space: str, theta_dim: int, *, keep_prob: float = 0.75) -> None:
+    def __init__(
+        self,
+        name: str,
+        grasp_space: str,
+        theta_dim: int,
+        *,
+        keep_prob: float = 0.75,
+        hand: HandKinematics | None = None,
+    ) -> None:
         super().__init__(name, grasp_space, theta_dim)
+        self.projection = None if hand is None else HandProjection(hand)
         drop = 1.0 - keep_prob
         self.image_channel = nn.Sequential(
             nn.Conv2d(IMAGE_CHANNELS, 32, kernel_size=12, stride=4, padding=4),
@@ -42,31 +60,33 @@ class ConfigCNN(SuccessModel):
             nn.Dropout(drop),
             nn.Linear(32, 1),
         )
-        self.apply(_initialize)
+        self.apply(xavier_weights)
 
-    def features(self, patch: Float[Tensor, "b 8 400 400"]) -> Float[Tensor, "b 8 25 25"]:
-        """m(z): features of object patches."""
+    def features(self, view: ViewBatch) -> Float[Tensor, "b 8 25 25"] | ViewBatch:
+        """m(z) if patches are fixed on the object; the views themselves if patches move with the palm."""
+        return self._image_features(view.patch) if self.projection is None else view.to(self.image_mean)
+
+    def head(
+        self, features: Float[Tensor, "f 8 25 25"] | ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]
+    ) -> Float[Tensor, "b"]:
+        """k(m, n(theta)): logits of b grasps, from the features of b views or of one that they share."""
+        if isinstance(features, ViewBatch):
+            features = self._image_features(self._palm_patches(features, theta))
+        tiled = self.theta_channel(self.normalize_theta(theta))[:, :, None, None]
+        joint = torch.cat(
+            (features.expand(len(theta), -1, -1, -1), tiled.expand(-1, -1, *features.shape[2:])), dim=1
+        )
+        logits: Tensor = self.joint_channel(joint)
+        return logits.squeeze(1)
+
+    def _image_features(self, patch: Float[Tensor, "b 8 400 400"]) -> Float[Tensor, "b 8 25 25"]:
         # Convolutions of this shape run nearly twice as fast on a CPU with the channels last.
         patch = self.normalize_patch(patch).contiguous(memory_format=torch.channels_last)
         features: Tensor = self.image_channel(patch)
         return features
 
-    def head(
-        self, features: Float[Tensor, "f 8 25 25"], theta: Float[Tensor, "b {self.theta_dim}"]
-    ) -> Float[Tensor, "b"]:
-        """k(m, n(theta)): logits of b grasps, from b feature maps or from one that they share."""
-        batch = theta.shape[0]
-        tiled = self.theta_channel(self.normalize_theta(theta))[:, :, None, None]
-        joint = torch.cat(
-            (features.expand(batch, -1, -1, -1), tiled.expand(-1, -1, *features.shape[2:])), dim=1
-        )
-        logits: Tensor = self.joint_channel(joint)
-        return logits.squeeze(1)
-
-
-def _initialize(layer: nn.Module) -> None:
-    """Xavier weights and zero biases."""
-    if isinstance(layer, nn.Conv2d | nn.Linear):
-        nn.init.xavier_uniform_(layer.weight)
-        assert layer.bias is not None
-        nn.init.zeros_(layer.bias)
+    def _palm_patches(self, view: ViewBatch, theta: Float[Tensor, "b d"]) -> Float[Tensor, "b 8 400 400"]:
+        assert self.projection is not None
+        palm = self.projection(theta, view.intrinsics).palm
+        up = palm.new_tensor([[0.0, -1.0]]).expand_as(palm)
+        return cut_patches(view.patch, palm[:, None], up, view.patch.shape[-1])[:, 0]

@@ -1,5 +1,6 @@
-"""How a success network learns: cross entropy, Adam, step schedule (paper, section 3.3)."""
+"""How networks learn: loss, Adam, step schedule (paper, sections 3.3 and 4.2)."""
 
+from abc import ABC, abstractmethod
 from dataclasses import asdict, dataclass
 
 import lightning
@@ -11,7 +12,8 @@ from torch.nn.functional import binary_cross_entropy_with_logits
 from torchmetrics.functional.classification import binary_auroc
 
 from preshape.data.grasp_dataset import GraspBatch
-from preshape.models.success_model import SuccessModel
+from preshape.models.regression_cnn import RegressionCNN
+from preshape.models.success_model import GraspNetwork, SuccessModel
 
 
 @dataclass(frozen=True)
@@ -31,26 +33,24 @@ class LearningSettings:
     seed: int
 
 
-class GraspLightningModule(lightning.LightningModule):
-    """A success network in training.
+class GraspLightningModule(lightning.LightningModule, ABC):
+    """A network in training.
 
     Args:
         model: the network.
         settings: how it learns.
     """
 
-    def __init__(self, model: SuccessModel, settings: LearningSettings) -> None:
+    def __init__(self, model: GraspNetwork, settings: LearningSettings) -> None:
         super().__init__()
         # PyTorch's own annotations leave memory_format out
-        self.model: SuccessModel = model.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
+        self.model = model.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
         self.settings = settings
         self.save_hyperparameters(asdict(settings), logger=False)
-        self._validation: list[tuple[Tensor, Tensor]] = []
 
-    def forward(self, batch: GraspBatch) -> Float[Tensor, "b"]:
-        """Logits of a batch."""
-        logits: Tensor = self.model(batch.patch, batch.theta)
-        return logits
+    @abstractmethod
+    def loss(self, batch: GraspBatch) -> Float[Tensor, ""]:
+        """What the weights make small."""
 
     def on_train_epoch_start(self) -> None:
         """Make batches and dropout functions of seed and epoch: an interrupted training goes on alike."""
@@ -60,10 +60,42 @@ class GraspLightningModule(lightning.LightningModule):
         torch.manual_seed(self.settings.seed + 7919 * (1 + self.current_epoch))
 
     def training_step(self, batch: GraspBatch) -> Float[Tensor, ""]:
-        """Cross entropy of a batch (equation 2)."""
-        loss = binary_cross_entropy_with_logits(self(batch), batch.label)
+        """Loss of a batch."""
+        loss = self.loss(batch)
         self.log("train_loss", loss, on_step=False, on_epoch=True, batch_size=len(batch.label))
         return loss
+
+    def configure_optimizers(self) -> OptimizerLRSchedulerConfig:
+        """Adam with a learning rate that drops after each third of the iterations."""
+        settings = self.settings
+        optimizer = torch.optim.Adam(self.model.parameters(), lr=settings.learning_rate)
+        third = settings.iterations // 3
+        schedule = torch.optim.lr_scheduler.MultiStepLR(
+            optimizer, milestones=[third, 2 * third], gamma=settings.learning_rate_factor
+        )
+        return {"optimizer": optimizer, "lr_scheduler": {"scheduler": schedule, "interval": "step"}}
+
+
+class SuccessLearning(GraspLightningModule):
+    """A success network in training, by cross entropy (equation 2).
+
+    Args:
+        model: the network.
+        settings: how it learns.
+    """
+
+    def __init__(self, model: SuccessModel, settings: LearningSettings) -> None:
+        super().__init__(model, settings)
+        self._validation: list[tuple[Tensor, Tensor]] = []
+
+    def forward(self, batch: GraspBatch) -> Float[Tensor, "b"]:
+        """Logits of a batch."""
+        logits: Tensor = self.model(batch.view, batch.theta)
+        return logits
+
+    def loss(self, batch: GraspBatch) -> Float[Tensor, ""]:
+        """Cross entropy of a batch."""
+        return binary_cross_entropy_with_logits(self(batch), batch.label)
 
     def validation_step(self, batch: GraspBatch) -> None:
         """Collect the logits of the validation trials."""
@@ -76,16 +108,38 @@ class GraspLightningModule(lightning.LightningModule):
         self.log("val_loss", binary_cross_entropy_with_logits(logits, labels))
         self.log("val_auc", binary_auroc(logits, labels.int()))
 
-    def predict_step(self, batch: GraspBatch) -> Float[Tensor, "b"]:
-        """Success probabilities of a batch."""
-        return torch.sigmoid(self(batch))
 
-    def configure_optimizers(self) -> OptimizerLRSchedulerConfig:
-        """Adam with a learning rate that drops after each third of the iterations."""
-        settings = self.settings
-        optimizer = torch.optim.Adam(self.model.parameters(), lr=settings.learning_rate)
-        third = settings.iterations // 3
-        schedule = torch.optim.lr_scheduler.MultiStepLR(
-            optimizer, milestones=[third, 2 * third], gamma=settings.learning_rate_factor
-        )
-        return {"optimizer": optimizer, "lr_scheduler": {"scheduler": schedule, "interval": "step"}}
+class RegressionLearning(GraspLightningModule):
+    """The regression network in training, by least squares and ridge regression (section 4.2).
+
+    It learns from whatever trials it is given; they should all have lifted.
+
+    Args:
+        model: the network.
+        settings: how it learns.
+    """
+
+    def __init__(self, model: RegressionCNN, settings: LearningSettings) -> None:
+        super().__init__(model, settings)
+
+    def forward(self, batch: GraspBatch) -> Float[Tensor, "b d"]:
+        """Grasps predicted for the views of a batch."""
+        theta: Tensor = self.model(batch.view)
+        return theta
+
+    def loss(self, batch: GraspBatch) -> Float[Tensor, ""]:
+        """Squared error of a batch, with ridge regression."""
+        loss: Tensor = self.model.loss(self(batch), batch.theta)
+        return loss
+
+    def validation_step(self, batch: GraspBatch) -> None:
+        """Log the mean loss of the validation trials."""
+        self.log("val_loss", self.loss(batch), batch_size=len(batch.label))
+
+
+def learning_of(model: GraspNetwork, settings: LearningSettings) -> GraspLightningModule:
+    """A network in training in the way of its kind."""
+    if isinstance(model, RegressionCNN):
+        return RegressionLearning(model, settings)
+    assert isinstance(model, SuccessModel)
+    return SuccessLearning(model, settings)

@@ -1,11 +1,14 @@
-"""What every network that predicts grasp success has in common."""
+"""What the networks have in common: what they see, what theta means to them, how inputs are normalised."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
+from typing import Any
 
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
+
+from preshape.perception.view_batch import ViewBatch
 
 IMAGE_CHANNELS = 8
 """Channels of the image: RGB, depth, normal xyz, curvature."""
@@ -15,13 +18,10 @@ MIN_THETA_STD = 0.05
 """Floor of a parameter's standard deviation (m or rad), for joints that the heuristic hardly moves."""
 
 
-class SuccessModel(nn.Module, ABC):
-    """A network for log odds of p(Y = 1 | theta, z), the probability that a grasp lifts the object.
+class GraspNetwork(nn.Module):
+    """A network that sees objects and knows a grasp space.
 
-    f = k(m(z), n(theta)) of the paper's section 3.1 is split into `features` = m, which a planner computes
-    once per view, and `head` = k(., n(.)), which it evaluates and differentiates again and again.
-
-    The statistics that normalise the inputs are buffers, so they travel with the weights.
+    The statistics that normalise its inputs are buffers, so they travel with the weights.
 
     Args:
         name: name of the network, compared with that of a weights file.
@@ -43,21 +43,6 @@ class SuccessModel(nn.Module, ABC):
         self.register_buffer("image_std", torch.ones(IMAGE_CHANNELS))
         self.register_buffer("theta_mean", torch.zeros(theta_dim))
         self.register_buffer("theta_std", torch.ones(theta_dim))
-
-    @abstractmethod
-    def features(self, patch: Float[Tensor, "b 8 h w"]) -> Float[Tensor, "b *f"]:
-        """Image features of object patches."""
-
-    @abstractmethod
-    def head(self, features: Float[Tensor, "f *g"], theta: Float[Tensor, "b {self.theta_dim}"]) -> Tensor:
-        """Logits of b grasps, from the features of b patches, or of the one patch that they all share."""
-
-    def forward(
-        self, patch: Float[Tensor, "b 8 h w"], theta: Float[Tensor, "b {self.theta_dim}"]
-    ) -> Float[Tensor, "b"]:
-        """Logits of grasps theta (camera frame, m and rad), each with its own patch."""
-        logits: Tensor = self.head(self.features(patch), theta)
-        return logits
 
     def fit_statistics(self, patches: Iterable[Tensor], theta: Float[Tensor, "n d"]) -> None:
         """Set the normalisation from training data.
@@ -83,6 +68,37 @@ class SuccessModel(nn.Module, ABC):
     def normalize_theta(self, theta: Float[Tensor, "b d"]) -> Float[Tensor, "b d"]:
         """Configurations with zero mean and unit deviation per parameter over the training data."""
         return (theta - self.theta_mean) / self.theta_std
+
+
+class SuccessModel(GraspNetwork, ABC):
+    """A network for log odds of p(Y = 1 | theta, z), the probability that a grasp lifts the object.
+
+    f = k(m(z), n(theta)) of the paper's section 3.1 is split into `features` = m, which a planner computes
+    once per view, and `head` = k(., n(.)), which it evaluates and differentiates again and again.
+
+    Args:
+        name, grasp_space, theta_dim: see `GraspNetwork`.
+    """
+
+    @abstractmethod
+    def features(self, view: ViewBatch) -> Any:
+        """What can be said about views without a grasp, in the form that `head` takes."""
+
+    @abstractmethod
+    def head(self, features: Any, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "b"]:
+        """Logits of b grasps, from the features of b views, or of the one view that they all share."""
+
+    def forward(self, view: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "b"]:
+        """Logits of grasps theta (camera frame, m and rad), each in its own view."""
+        return self.head(self.features(view), theta)
+
+
+def xavier_weights(layer: nn.Module) -> None:
+    """Xavier weights and zero biases, for `nn.Module.apply`."""
+    if isinstance(layer, nn.Conv2d | nn.Linear):
+        nn.init.xavier_uniform_(layer.weight)
+        assert layer.bias is not None
+        nn.init.zeros_(layer.bias)
 
 
 def channel_statistics(patches: Iterable[Tensor]) -> tuple[Float[Tensor, "c"], Float[Tensor, "c"]]:

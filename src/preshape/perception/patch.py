@@ -1,23 +1,35 @@
 """Patches: fixed-size crops of the 8-channel image around a pixel (paper, section 3.1)."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Float, Float32
 
 from preshape.geometry.camera import Camera
 from preshape.perception.image import CHANNEL_NAMES, eight_channel_image
 from preshape.perception.observation import Observation
-from preshape.perception.segmentation import SegmentedObject
 from preshape.perception.surface import REACH_PX
 
 PATCH_SIZE = 400
 """Width and height of an object patch in pixels."""
 
 
-def object_centre(segmented: SegmentedObject, camera: Camera) -> tuple[float, float]:
+@dataclass(frozen=True, eq=False)
+class ObjectPatch:
+    """The patch around an object, and where the object is.
+
+    Args:
+        channels: the 8 channels.
+        T_camera_box: pose of the object's bounding box, whose centre the patch lies around.
+    """
+
+    channels: Float[np.ndarray, "8 h w"]
+    T_camera_box: Float[np.ndarray, "4 4"]
+
+
+def object_centre(T_camera_box: Float[np.ndarray, "4 4"], camera: Camera) -> tuple[float, float]:
     """Pixel coordinates (u, v) to which the centre of the object's bounding box projects."""
-    u, v = camera.project(segmented.T_camera_box[:3, 3])
+    u, v = camera.project(T_camera_box[:3, 3])
     return float(u), float(v)
 
 

@@ -9,6 +9,7 @@ from torch import Tensor
 from torch.nn.functional import logsigmoid
 
 from preshape.models.success_model import SuccessModel
+from preshape.perception.view_batch import ViewBatch
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,19 +54,19 @@ class Objective(ABC):
 class SuccessObjective(Objective):
     """The learned success probability in one view, with a uniform prior: the paper's objective.
 
-    The image patch stays where it is while theta moves, so its features are computed once and the gradient is
-    the paper's dk/dn dn/dtheta (section 3.1, equation 7 without its second term).
+    What the network says of the view alone is computed once. If its patch stays where it is while theta
+    moves, the gradient is the paper's dk/dn dn/dtheta (section 3.4, equation 4 without its second term).
 
     Args:
         model: a trained network; it is put into evaluation mode, its weights get no gradients.
-        patch: the 8-channel patch around the object.
+        view: the object's patch, one in the batch.
     """
 
-    def __init__(self, model: SuccessModel, patch: Float[Tensor, "c h w"]) -> None:
+    def __init__(self, model: SuccessModel, view: ViewBatch) -> None:
         self._model = model.eval()
         weights = next(model.parameters())
         with torch.no_grad():
-            self._features = model.features(patch[None].to(weights))
+            self._features = model.features(view.to(weights))
         self._dtype, self._device = weights.dtype, weights.device
 
     def evaluate(self, theta: Float[Tensor, "s d"]) -> Evaluation:

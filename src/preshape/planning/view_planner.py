@@ -6,12 +6,14 @@ from dataclasses import dataclass, field
 import numpy as np
 import torch
 
+from preshape.errors import InputError
 from preshape.grasps.heuristic import HeuristicSettings, InitialGrasp, heuristic_grasps
 from preshape.grasps.space import GraspSpace
-from preshape.models.success_model import SuccessModel
+from preshape.models.success_model import GraspNetwork, SuccessModel
 from preshape.perception.observation import Observation
 from preshape.perception.patch import object_centre, object_patch
 from preshape.perception.segmentation import SegmentationSettings, SegmentedObject, segment
+from preshape.perception.view_batch import ViewBatch, patch_intrinsics
 from preshape.planning.bounds import Bounds, BoxSize
 from preshape.planning.grasp_plan import GraspPlan
 from preshape.planning.objective import Objective, SuccessObjective, UnknownSuccess
@@ -28,7 +30,7 @@ class ViewPlanner:
         box: how far it may go from an initial grasp.
         space: what theta means.
         heuristic, segmentation: how initial grasps are made.
-        model: a trained network; None if nothing is known about success.
+        model: a trained network that predicts success; None if nothing is known about it.
     """
 
     name: str
@@ -36,7 +38,7 @@ class ViewPlanner:
     box: BoxSize
     space: GraspSpace
     heuristic: HeuristicSettings
-    model: SuccessModel | None = None
+    model: GraspNetwork | None = None
     segmentation: SegmentationSettings = field(default_factory=SegmentationSettings)
 
     def plan(self, observation: Observation, rng: np.random.Generator) -> GraspPlan:
@@ -64,6 +66,13 @@ class ViewPlanner:
     def _objective(self, observation: Observation, segmented: SegmentedObject) -> Objective:
         if self.model is None:
             return UnknownSuccess()
-        centre = object_centre(segmented, observation.camera)
-        patch = object_patch(observation, centre)
-        return SuccessObjective(self.model, torch.from_numpy(patch))
+        if not isinstance(self.model, SuccessModel):
+            raise InputError(
+                f"The network `{self.model.name}` does not predict the success of grasps",
+                where="model",
+                fix="choose one that does, such as model=config_cnn",
+            )
+        centre = object_centre(segmented.T_camera_box, observation.camera)
+        patch = torch.from_numpy(object_patch(observation, centre))
+        intrinsics = torch.from_numpy(patch_intrinsics(observation.camera, centre))
+        return SuccessObjective(self.model, ViewBatch(patch[None], intrinsics[None]))

@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from synthetic_scenes import ORIGIN, BoxRenderer, allegro_space, write_data_set
+from synthetic_scenes import ORIGIN, SIZES_M, BoxRenderer, allegro_space, write_data_set
 
 from preshape.data.data_module import BatchSettings, GraspDataModule
 from preshape.data.folds import HoldOut
 from preshape.data.images import PatchCache
-from preshape.data.tables import read_trials
+from preshape.data.tables import read_scenes, read_trials
 from preshape.data.trial_table import TableOrigin
 from preshape.errors import InputError
 
@@ -43,7 +43,7 @@ def test_executed_trials_become_batches_of_what_was_reached(folder: Path) -> Non
     assert len(data.train) + len(data.validation) + len(data.test) == len(executed)
     known = torch.as_tensor(executed.reached, dtype=torch.float32)
     for batch in data.train_dataloader():
-        assert batch.patch.shape == (4, 8, 400, 400)
+        assert batch.view.patch.shape == (4, 8, 400, 400)
         assert batch.label.sum() >= 1
         rows = [int((known == theta).all(dim=1).nonzero()) for theta in batch.theta]
         assert batch.label.bool().tolist() == executed.lifted[rows].tolist()
@@ -68,9 +68,23 @@ def test_every_grasp_comes_with_the_patch_of_its_own_scene(folder: Path) -> None
     scene_ids = np.unique(data.test.trials.scene_ids).tolist()
     patches = dict(zip(scene_ids, data.test.patches(), strict=True))
     batches = list(data.test_dataloader())
-    together = torch.cat([batch.patch for batch in batches])
+    together = torch.cat([batch.view.patch for batch in batches])
     for patch, scene_id in zip(together, data.test.trials.scene_ids.tolist(), strict=True):
         assert torch.equal(patch, patches[scene_id])
+
+
+def test_points_of_the_camera_frame_are_found_in_the_patch(folder: Path) -> None:
+    data = make_module(folder)
+    data.setup()
+    scenes = read_scenes(folder / "scenes.parquet").by_id
+    (view, *_), *_ = data.test_dataloader()
+    for scene_id, patch, numbers in zip(data.test.trials.scene_ids.tolist(), *view, strict=False):
+        scene = scenes[scene_id]
+        top = scene.T_world_object @ (0, 0, SIZES_M[scene.object_id][2] / 2 - 0.01, 1)
+        x, y, depth, _ = np.linalg.inv(scene.camera.T_world_camera) @ top
+        fx, fy, cx, cy = numbers.tolist()
+        seen = patch[:3, round(fy * y / depth + cy), round(fx * x / depth + cx)]
+        assert seen.tolist() == pytest.approx([200 / 255, 40 / 255, 40 / 255], abs=1e-3)
 
 
 def test_a_table_collected_with_something_else_is_refused(folder: Path) -> None:

@@ -19,7 +19,9 @@ from preshape.data.data_module import BatchSettings, GraspDataModule
 from preshape.data.folds import HoldOut
 from preshape.data.images import PatchCache
 from preshape.models.lightning_module import LearningSettings
+from preshape.models.regression_cnn import RegressionCNN
 from preshape.models.success_model import SuccessModel
+from preshape.perception.view_batch import ViewBatch
 from preshape.tracking import TrackedRun, UntrackedRun
 from preshape.training import TrainerSettings, predict, train
 
@@ -38,8 +40,8 @@ class TinyNetwork(SuccessModel):
         super().__init__("tiny", "allegro_palm14", 14)
         self.layers = nn.Sequential(nn.Linear(8 + 14, 16), nn.Tanh(), nn.Dropout(0.25), nn.Linear(16, 1))
 
-    def features(self, patch: Float[Tensor, "b 8 h w"]) -> Float[Tensor, "b 8"]:
-        return self.normalize_patch(patch[:, :, ::40, ::40]).mean(dim=(2, 3))
+    def features(self, view: ViewBatch) -> Float[Tensor, "b 8"]:
+        return self.normalize_patch(view.patch[:, :, ::40, ::40]).mean(dim=(2, 3))
 
     def head(self, features: Float[Tensor, "f 8"], theta: Float[Tensor, "b 14"]) -> Float[Tensor, "b"]:
         joint = torch.cat((features.expand(len(theta), -1), self.normalize_theta(theta)), dim=1)
@@ -137,6 +139,18 @@ def test_the_best_weights_are_kept(data: GraspDataModule, tmp_path: Path) -> Non
         labels = data.validation.trials.lifted
         loss = -np.log(np.where(labels, probability, 1 - probability)).mean()
         assert loss == pytest.approx(choose(Losses.losses), rel=1e-4)
+
+
+def test_regression_learns_from_grasps_that_lifted(data: GraspDataModule, tmp_path: Path) -> None:
+    torch.manual_seed(0)
+    model = RegressionCNN("regression", "allegro_palm14", 14)
+    settings = replace(SETTINGS, learning=replace(SETTINGS.learning, iterations=6))
+    result = train(model, data, settings, tmp_path, UntrackedRun())
+    assert all(part.trials.lifted.all() for part in (data.train, data.validation, data.test))
+    predictions = pd.read_parquet(tmp_path / "predictions.parquet")
+    assert result.metrics.n == len(predictions) == len(data.test) > 0
+    assert np.stack(predictions["theta_predicted"]).shape == data.test.trials.reached.shape
+    assert load_weights(result.weights, model).metrics == result.metrics.to_dict()
 
 
 def test_an_interrupt_stays_an_interrupt(data: GraspDataModule, tmp_path: Path) -> None:

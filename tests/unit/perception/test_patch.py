@@ -42,7 +42,7 @@ def test_patch_is_the_image_around_its_centre(u: float, v: float, size: int) -> 
 def test_the_object_is_in_the_middle_of_its_patch(table_top: Any, place: tuple[float, float]) -> None:
     observation = table_top.view(table_top.box((0.1, 0.06, 0.2), place), noise_seed=0)
     segmented = segment(observation, SegmentationSettings())
-    centre = object_centre(segmented, observation.camera)
+    centre = object_centre(segmented.T_camera_box, observation.camera)
     rows, columns = np.nonzero(segmented.mask)
     assert abs(rows.mean() - centre[1]) < 20
     assert abs(columns.mean() - centre[0]) < 10

@@ -3,6 +3,7 @@ import pytest
 import torch
 
 from preshape.models.config_cnn import ConfigCNN
+from preshape.perception.view_batch import ViewBatch
 from preshape.planning.bounds import Bounds
 from preshape.planning.gradient_ascent import GradientAscent
 from preshape.planning.line_search import LineSearch
@@ -16,16 +17,17 @@ def network() -> ConfigCNN:
 
 
 @pytest.fixture(scope="module")
-def patch() -> torch.Tensor:
-    return torch.rand(8, 400, 400, generator=torch.Generator().manual_seed(1))
+def view() -> ViewBatch:
+    patch = torch.rand(1, 8, 400, 400, generator=torch.Generator().manual_seed(1))
+    return ViewBatch(patch, torch.tensor([[525.0, 525.0, 200.0, 200.0]]))
 
 
 def some_theta(starts: int) -> torch.Tensor:
     return torch.randn(starts, 14, generator=torch.Generator().manual_seed(2), dtype=torch.float64)
 
 
-def test_gradient_agrees_with_finite_differences(network: ConfigCNN, patch: torch.Tensor) -> None:
-    objective = SuccessObjective(network, patch)
+def test_gradient_agrees_with_finite_differences(network: ConfigCNN, view: ViewBatch) -> None:
+    objective = SuccessObjective(network, view)
     theta = some_theta(3).requires_grad_()
     (gradient,) = torch.autograd.grad(objective(theta).sum(), theta)
     epsilon = 1e-6
@@ -36,26 +38,26 @@ def test_gradient_agrees_with_finite_differences(network: ConfigCNN, patch: torc
         np.testing.assert_allclose(gradient[:, parameter], difference.detach(), rtol=1e-5, atol=1e-8)
 
 
-def test_features_once_say_the_same_as_the_whole_network(network: ConfigCNN, patch: torch.Tensor) -> None:
+def test_features_once_say_the_same_as_the_whole_network(network: ConfigCNN, view: ViewBatch) -> None:
     theta = some_theta(3)
-    objective = SuccessObjective(network, patch)
-    logits = network(patch.double().expand(3, -1, -1, -1), theta)
+    objective = SuccessObjective(network, view)
+    logits = network(ViewBatch(*(part.double().expand(3, *part.shape[1:]) for part in view)), theta)
     np.testing.assert_allclose(objective.success_prob(theta).detach(), logits.sigmoid().detach(), rtol=1e-9)
     np.testing.assert_allclose(objective(theta).detach(), logits.sigmoid().log().detach(), rtol=1e-9)
 
 
-def test_planning_leaves_the_network_as_it_was(network: ConfigCNN, patch: torch.Tensor) -> None:
+def test_planning_leaves_the_network_as_it_was(network: ConfigCNN, view: ViewBatch) -> None:
     before = {name: value.clone() for name, value in network.state_dict().items()}
     initial = some_theta(2).numpy()
     planner = GradientAscent(LineSearch(first_step=0.25), max_iterations=3)
-    planner.plan(SuccessObjective(network, patch), initial, Bounds(initial - 0.1, initial + 0.1))
+    planner.plan(SuccessObjective(network, view), initial, Bounds(initial - 0.1, initial + 0.1))
     assert all(torch.equal(before[name], value) for name, value in network.state_dict().items())
     assert all(weights.grad is None and weights.requires_grad for weights in network.parameters())
 
 
-def test_a_single_precision_network_keeps_bounds_of_double_precision(patch: torch.Tensor) -> None:
+def test_a_single_precision_network_keeps_bounds_of_double_precision(view: ViewBatch) -> None:
     torch.manual_seed(3)
-    objective = SuccessObjective(ConfigCNN("config_cnn", "test", 14), patch)
+    objective = SuccessObjective(ConfigCNN("config_cnn", "test", 14), view)
     initial = some_theta(4).numpy()
     bounds = Bounds(initial - 1e-3 / 3, initial + 1e-3 / 3)
     result = GradientAscent(LineSearch(first_step=1.0)).plan(objective, initial, bounds)
