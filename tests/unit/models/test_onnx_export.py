@@ -1,0 +1,50 @@
+"""ONNX Runtime and PyTorch say the same of a grasp."""
+
+from pathlib import Path
+
+import numpy as np
+import onnxruntime
+import pytest
+import torch
+
+from preshape.errors import InputError
+from preshape.hands.allegro import allegro_hand
+from preshape.models.config_cnn import ConfigCNN
+from preshape.models.patches_cnn import PatchesCNN
+from preshape.models.regression_cnn import RegressionCNN
+from preshape.models.success_model import SuccessModel
+from preshape.onnx_export import INPUTS, OUTPUT, export_onnx
+from preshape.perception.hand_projection import HandProjection
+from preshape.perception.view_batch import ViewBatch
+
+SPACE = ("network", "allegro_palm14", 14)
+
+
+def config_cnn() -> SuccessModel:
+    return ConfigCNN(*SPACE)
+
+
+def patches_cnn() -> SuccessModel:
+    return PatchesCNN(*SPACE, projection=HandProjection(allegro_hand()))
+
+
+@pytest.mark.parametrize("network", [config_cnn, patches_cnn])
+def test_onnx_runtime_agrees_with_torch(network: object, tmp_path: Path) -> None:
+    torch.manual_seed(0)
+    model = network().eval()
+    view = ViewBatch(torch.randn(2, 8, 400, 400), torch.tensor([[525.0, 520.0, 200.0, 190.0]]).repeat(2, 1))
+    theta = 0.1 * torch.randn(2, 14)
+    theta[:, 2] += 1.0
+    model.fit_statistics(view.patch, theta)
+    export_onnx(tmp_path / "network.onnx", model, grasps=2)
+    session = onnxruntime.InferenceSession(tmp_path / "network.onnx")
+    inputs = dict(zip(INPUTS, (part.numpy() for part in (*view, theta)), strict=True))
+    (logit,) = session.run([OUTPUT], inputs)
+    with torch.no_grad():
+        np.testing.assert_allclose(logit, model(view, theta).numpy(), rtol=1e-4, atol=1e-4)
+
+
+def test_a_network_that_predicts_no_success_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="does not predict success"):
+        export_onnx(tmp_path / "network.onnx", RegressionCNN(*SPACE))
+    assert not list(tmp_path.iterdir())
