@@ -7,7 +7,9 @@ import pytest
 from preshape import source_digest as module
 
 FILES = {
-    "sim/pictures.py": '"""Pictures."""\nfrom preshape.lens import focus\n\n\ndef draw():\n    return focus(1)\n',
+    "sim/pictures.py": (
+        '"""Pictures."""\nfrom preshape.lens import focus\n\n\ndef draw():\n    return focus(1)\n'
+    ),
     "src/preshape/lens.py": "import numpy\nimport preshape.glass\n\n\ndef focus(x):\n    return x + 1\n",
     "src/preshape/glass.py": "INDEX = 1.5\n",
     "src/preshape/other.py": "X = 1\n",
