@@ -169,8 +169,9 @@ def table_maps(grasps: pd.DataFrame) -> Figure:
             axes.text(middles[i], middles[j], text, ha="center", va="center", fontsize=7, color=colour)
         axes.set_title(title, fontsize=10)
         axes.set(xlabel="x (m), away from the robot", ylabel="y (m)")
-        axes.set_xticks(GRID_M[::2])
-        axes.set_yticks(GRID_M[::2])
+        axes.set_xticks(GRID_M)
+        axes.set_yticks(GRID_M)
+        axes.tick_params(labelsize=8)
     return figure
 
 

@@ -78,6 +78,7 @@ class DatasetReport:
         if self.label_check is not None:
             check = read_json(self.label_check)
             figures["label_check"] = {key: check[key] for key in ("n", "seed", "disagreements", "how")}
+            put_section(Path(self.card), "label_check", "\n".join(_label_check(check)))
         write_json(self.output, provenance(self.seed) | figures)
         pictures = Path(self.card).parent / "pictures"
         for name, figure in self._figures(grasps).items():
@@ -147,6 +148,20 @@ def _made_by() -> list[str]:
 def _sensitivity(result: Mapping[str, Any]) -> list[str]:
     made = f"Made by `{result['command']}` at revision `{result['git_revision']}`, seed {result['seed']}."
     return _joined([[made], tables.sensitivity_lines(result)])
+
+
+def _label_check(check: Mapping[str, Any]) -> list[str]:
+    made = f"Made by `python sim/last_frames.py` at revision `{check['git_revision']}`, seed {check['seed']}."
+    repeated = (
+        f"{check['n']} random executed trials, half of them lifted, were repeated with their seeds: "
+        f"{check['repeated_differently']} ended otherwise than recorded."
+    )
+    looked = f"Pictures that contradict their label: **{check['disagreements']}**. Looked at: {check['how']}."
+    sheets = (
+        f"![How {name} trials ended, with their labels](pictures/last_frames_{name}.webp)"
+        for name in ("lifted", "failed")
+    )
+    return _joined([[made], [f"{repeated} {looked}"], *([sheet] for sheet in sheets)])
 
 
 def _picture(name: str) -> str:

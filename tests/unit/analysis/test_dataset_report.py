@@ -119,7 +119,8 @@ def test_report_holds_figures_pages_and_small_pictures(
     write_json(
         tmp_path / "flips.json", {"command": "c", "git_revision": "r", "seed": 0, "variants": {"x": FLIPS}}
     )
-    write_json(tmp_path / "check.json", {"n": 9, "seed": 1, "disagreements": 0, "how": "by eye"})
+    found = {"n": 9, "seed": 1, "disagreements": 0, "how": "by eye"}
+    write_json(tmp_path / "check.json", found | {"git_revision": "r", "repeated_differently": 0})
     written = report(
         tmp_path,
         families=str(families),
@@ -146,6 +147,7 @@ def test_report_holds_figures_pages_and_small_pictures(
         assert (tmp_path / "pictures" / f"dataset_{name}.png").stat().st_size < 150_000
     assert "| x | 20 | 3 | 15.0 % |" in card
     assert "| not lifted | 9 | 1 |" in card
+    assert "**0**. Looked at: by eye." in card
     assert f"| executed | {figures['executed']} |" in (tmp_path / "results.md").read_text()
 
 
