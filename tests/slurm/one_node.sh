@@ -37,13 +37,19 @@ SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 SchedulerParameters=sched_interval=2,bf_interval=2
 MpiDefault=none
-NodeName=$host NodeAddr=127.0.0.1 CPUs=$(nproc) State=UNKNOWN
+DefMemPerCPU=1000
+NodeName=$host NodeAddr=127.0.0.1 CPUs=$(nproc) RealMemory=$(free --mebi | awk '/^Mem:/ {print $2}') State=UNKNOWN
 PartitionName=all Nodes=$host Default=YES MaxTime=INFINITE State=UP
 END
 
 pids=()
 end() {
     scancel --user="$(id -un)" 2> /dev/null || true
+    # what is left of a job would trouble the next cluster on the same ports
+    for _ in $(seq 60); do
+        pgrep slurmstepd > /dev/null || break
+        sleep 1
+    done
     kill "${pids[@]}" 2> /dev/null || true
     wait "${pids[@]}" 2> /dev/null || true
     if [ "${status:-1}" -eq 0 ]; then rm -rf "$folder"; else echo "The cluster's logs: $folder" >&2; fi
