@@ -6,7 +6,10 @@ import pandas as pd
 
 from analysis.dataset_rates import frame_rate, rates_by
 from analysis.lift_rates import LiftRate
+from preshape.data.trial import TrialOutcome
 
+DROPPED, HIGH_M = TrialOutcome.DROPPED.value, 0.1
+"""Objects that ended higher (m), yet too low to count as lifted, may still be in the hand."""
 PARTS = ("planning", "physics", "scene", "rendering")
 """Parts of a trial's time; each has its column."""
 
@@ -21,6 +24,7 @@ def summary(grasps: pd.DataFrame) -> dict[str, Any]:
         "planned": len(grasps),
         **frame_rate(grasps).to_dict(),
         "outcomes": grasps["outcome"].value_counts().to_dict(),
+        "dropped_but_high": int(((grasps["outcome"] == DROPPED) & (grasps["lift_height_m"] > HIGH_M)).sum()),
         "planners": _plain(rates_by(grasps, "planner")),
         "faces": _plain(rates_by(grasps, "face")),
         "planners_and_faces": _plain(rates_by(grasps, ["planner", "face"])),

@@ -20,6 +20,7 @@ def counts_lines(figures: Mapping[str, Any]) -> list[str]:
         f"| grasps planned | {figures['planned']:,}: {outcomes} |",
         f"| executed | {figures['executed']:,} |",
         f"| lifted | {figures['lifted']:,}: {percent_interval(figures)} |",
+        f"| dropped, yet more than 10 cm up at the end | {figures['dropped_but_high']} |",
         f"| objects with both outcomes | {figures['objects_with_both_outcomes']} of {figures['objects']} |",
     ]
 
