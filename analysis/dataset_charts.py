@@ -73,15 +73,14 @@ def _draw_rows(axes: Axes, groups: Groups, longest: int) -> None:
 
 def in_columns(groups: Groups, columns: int) -> list[Groups]:
     """The groups in columns of about equal length; a group that does not fit goes on in the next."""
-    lines = [(heading, name, rate) for heading, rates in groups for name, rate in rates.items()]
-    length = -(-len(lines) // columns)
-    sides: list[Groups] = []
-    for start in range(0, columns * length, length):
-        side: dict[str, dict[str, LiftRate]] = {}
-        for heading, name, rate in lines[start : start + length]:
-            side.setdefault(heading, {})[name] = rate
-        sides.append(list(side.items()))
-    return sides
+    most = -(-sum(len(rates) + 1 for _, rates in groups) // columns)
+    sides: list[dict[str, dict[str, LiftRate]]] = [{}]
+    for heading, rates in groups:
+        for name, rate in rates.items():
+            if len(sides) < columns and sum(len(own) + 1 for own in sides[-1].values()) >= most:
+                sides.append({})
+            sides[-1].setdefault(heading, {})[name] = rate
+    return [list(side.items()) for side in sides]
 
 
 def outcome_bars(grasps: pd.DataFrame, columns: Sequence[str]) -> Figure:
