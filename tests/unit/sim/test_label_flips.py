@@ -138,7 +138,12 @@ def run(command: str, folder: Path, *overrides: str) -> str:
 
 
 def test_the_same_settings_flip_nothing_and_finished_variants_are_kept(recorded: Path) -> None:
-    overrides = (f"output={recorded}/flips.json", "trials=2", "only=[unchanged,object_displaced]")
+    overrides = (
+        f"output={recorded}/flips.json",
+        "trials=2",
+        "only=[unchanged,object_displaced]",
+        "trials_of.object_displaced=2",
+    )
     run("sensitivity", recorded, *overrides)
     variants = read_json(recorded / "flips.json")["variants"]
     assert (variants["unchanged"]["flips"], variants["unchanged"]["identical"]) == (0, 2)
