@@ -54,7 +54,8 @@ class CrashReport:
         tables: tables compared with the one of an undisturbed run.
         rows: rows of that.
         differing_rows: rows that differ, are missing or additional, in all tables.
-        orphans: worker processes that outlived the collection that they worked for.
+        orphans: worker processes that outlived their collection by more than ten seconds. One that is still
+            starting ends without having worked, but only when its imports are through.
     """
 
     kills: int = 0
