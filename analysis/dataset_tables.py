@@ -91,7 +91,7 @@ def sensitivity_lines(result: Mapping[str, Any]) -> list[str]:
         after = f"{flips['lifted_before']} → {flips['lifted_after']}"
         share = f"{100 * flips['share']:.1f} %"
         numbers = f"{flips['n']} | {flips['flips']} | {share} | {interval} | {after} | {flips['identical']}"
-        lines.append(f"| {plain_name(name)} | {numbers} |")
+        lines.append(f"| `{name}` | {numbers} |")
         if flips["soft_labels"] is not None:
             softened[name] = flips["soft_labels"]
     for name, soft in softened.items():

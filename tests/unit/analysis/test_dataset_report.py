@@ -145,7 +145,7 @@ def test_report_holds_figures_pages_and_small_pictures(
         with Image.open(tmp_path / "pictures" / f"dataset_{name}.png") as picture:
             assert min(picture.size) > 100
         assert (tmp_path / "pictures" / f"dataset_{name}.png").stat().st_size < 150_000
-    assert "| x | 20 | 3 | 15.0 % |" in card
+    assert "| `x` | 20 | 3 | 15.0 % |" in card
     assert "| not lifted | 9 | 1 |" in card
     assert "**0**. Looked at: by eye." in card
     assert f"| executed | {figures['executed']} |" in (tmp_path / "results.md").read_text()
