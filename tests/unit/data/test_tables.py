@@ -141,7 +141,7 @@ def with_column(name: str, values: list[object]) -> Callable[[pa.Table], pa.Tabl
         (lambda path: path.write_bytes(path.read_bytes()[:200]), "cannot be read"),
         (lambda path: path.write_bytes(b""), "cannot be read"),
         (lambda path: path.write_text("trial_id,scene_id"), "cannot be read"),
-        (lambda path: edit(path, with_metadata(b'"version": 1', b'"version": 7')), "version 7"),
+        (lambda path: edit(path, with_metadata(b'"version": ', b'"version": 7')), "version 7"),
         (lambda path: edit(path, lambda t: t.replace_schema_metadata(None)), "not a table of"),
         (lambda path: edit(path, with_metadata(b"camera", b"lens")), "where it comes from|grasp space"),
         (lambda path: edit(path, lambda t: t.drop_columns("seed")), "columns: seed"),
