@@ -7,8 +7,6 @@ from contextlib import closing
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-
 from preshape.data.scene import Scene
 from preshape.data.trial import Trial, TrialOutcome
 from preshape.progress import Progress
@@ -61,24 +59,7 @@ class GuardedRunner:
         """Try one grasp."""
         if self.begin(grasp.trial_id):
             return self.runner.run(scene, grasp, spectator)
-        return Trial(
-            trial_id=grasp.trial_id,
-            scene_id=scene.scene_id,
-            object_id=scene.object_id,
-            planner=grasp.planner,
-            face=grasp.face,
-            initial=grasp.initial,
-            planned=grasp.planned,
-            reached=np.full_like(grasp.planned, np.nan),
-            outcome=TrialOutcome.UNSTABLE,
-            lift_height_m=float("nan"),
-            success_prob=grasp.success_prob,
-            seed=grasp.seed,
-            scene_s=0.0,
-            planning_s=grasp.planning_s,
-            physics_s=0.0,
-            rendering_s=0.0,
-        )
+        return grasp.untried(scene, TrialOutcome.UNSTABLE)
 
 
 def finish_scenes(

@@ -48,6 +48,27 @@ class PlannedGrasp:
     seed: int
     planning_s: float = 0.0
 
+    def untried(self, scene: Scene, outcome: TrialOutcome) -> Trial:
+        """The row of this grasp as long as the robot has not tried it."""
+        return Trial(
+            trial_id=self.trial_id,
+            scene_id=scene.scene_id,
+            object_id=scene.object_id,
+            planner=self.planner,
+            face=self.face,
+            initial=self.initial,
+            planned=self.planned,
+            reached=np.full_like(self.planned, np.nan),
+            outcome=outcome,
+            lift_height_m=float("nan"),
+            success_prob=self.success_prob,
+            seed=self.seed,
+            scene_s=0.0,
+            planning_s=self.planning_s,
+            physics_s=0.0,
+            rendering_s=0.0,
+        )
+
 
 @dataclass(frozen=True)
 class DisturbanceSettings:
@@ -158,28 +179,14 @@ class TrialRunner:
         scene_s: float = 0.0,
         physics_s: float = 0.0,
     ) -> Trial:
-        return Trial(
-            trial_id=grasp.trial_id,
-            scene_id=scene.scene_id,
-            object_id=scene.object_id,
-            planner=grasp.planner,
-            face=grasp.face,
-            initial=grasp.initial,
-            planned=grasp.planned,
-            reached=self._reached(scene, execution),
-            outcome=outcome,
-            lift_height_m=execution.measured.final_height_m if execution else float("nan"),
-            success_prob=grasp.success_prob,
-            seed=grasp.seed,
-            scene_s=scene_s,
-            planning_s=grasp.planning_s + planning_s,
-            physics_s=physics_s,
-            rendering_s=0.0,
-        )
-
-    def _reached(self, scene: Scene, execution: Execution | None) -> Float[np.ndarray, "d"]:
+        row = grasp.untried(scene, outcome)
+        times = {"scene_s": scene_s, "planning_s": row.planning_s + planning_s, "physics_s": physics_s}
         if execution is None:
-            return np.full(self._space.dim, np.nan)
+            return replace(row, **times)
+        height_m = execution.measured.final_height_m
+        return replace(row, reached=self._reached(scene, execution), lift_height_m=height_m, **times)
+
+    def _reached(self, scene: Scene, execution: Execution) -> Float[np.ndarray, "d"]:
         T_camera_palm = invert_pose(scene.camera.T_world_camera) @ execution.T_world_palm
         return self._space.theta(T_camera_palm, self.robot.preshape_joints(execution.hand))
 
