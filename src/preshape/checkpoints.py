@@ -18,7 +18,7 @@ from preshape.errors import InputError
 from preshape.files import atomic_path, read_json, write_json
 from preshape.models.success_model import GraspNetwork
 
-WEIGHTS_VERSION = 1
+WEIGHTS_VERSION = 2
 """Version of the pair of files; raised whenever old ones could be misread."""
 RETRAIN = "choose weights that `python src/train.py` wrote, or train again"
 

@@ -66,7 +66,7 @@ class ConfigCNN(SuccessModel):
         """m(z) if patches are fixed on the object; the views themselves if patches move with the palm."""
         return self._image_features(view.patch) if self.projection is None else view.to(self.image_mean)
 
-    def head(
+    def raw_head(
         self, features: Float[Tensor, "f 8 25 25"] | ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]
     ) -> Float[Tensor, "b"]:
         """k(m, n(theta)): logits of b grasps, from the features of b views or of one that they share."""

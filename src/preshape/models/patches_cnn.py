@@ -58,7 +58,7 @@ class PatchesCNN(SuccessModel):
         """The views themselves, from which patches are cut."""
         return view.to(self.image_mean)
 
-    def head(self, features: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "b"]:
+    def raw_head(self, features: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "b"]:
         """Logits of b grasps, from b views or from one that they share."""
         hand = self.projection(theta, features.intrinsics)
         palms = cut_patches(features.patch, hand.palm[:, None], hand.direction, PALM_PATCH)

@@ -76,21 +76,42 @@ class SuccessModel(GraspNetwork, ABC):
     f = k(m(z), n(theta)) of the paper's section 3.1 is split into `features` = m, which a planner computes
     once per view, and `head` = k(., n(.)), which it evaluates and differentiates again and again.
 
+    The logits are calibrated: what the network itself says (`raw_head`) is moved by `logit_shift` and divided
+    by `temperature`. Both are buffers, so they travel with the weights; while a network is trained they are
+    0 and 1 and change nothing.
+
     Args:
         name, grasp_space, theta_dim: see `GraspNetwork`.
     """
+
+    logit_shift: Tensor
+    temperature: Tensor
+
+    def __init__(self, name: str, grasp_space: str, theta_dim: int) -> None:
+        super().__init__(name, grasp_space, theta_dim)
+        self.register_buffer("logit_shift", torch.zeros(()))
+        self.register_buffer("temperature", torch.ones(()))
 
     @abstractmethod
     def features(self, view: ViewBatch) -> Any:
         """What can be said about views without a grasp, in the form that `head` takes."""
 
     @abstractmethod
+    def raw_head(self, features: Any, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "b"]:
+        """Logits of b grasps before calibration, from the features of b views, or of one that they share."""
+
     def head(self, features: Any, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "b"]:
         """Logits of b grasps, from the features of b views, or of the one view that they all share."""
+        return (self.raw_head(features, theta) + self.logit_shift) / self.temperature
 
     def forward(self, view: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "b"]:
         """Logits of grasps theta (camera frame, m and rad), each in its own view."""
         return self.head(self.features(view), theta)
+
+    def calibrate(self, *, logit_shift: float, temperature: float) -> None:
+        """Set how logits are moved, and then divided, from now on."""
+        self.logit_shift.fill_(logit_shift)
+        self.temperature.fill_(temperature)
 
 
 def xavier_weights(layer: nn.Module) -> None:
