@@ -1,6 +1,7 @@
 """Which trials are learned from, and which are held out."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -23,6 +24,8 @@ class SplitScheme(StrEnum):
     """Its object and perhaps its scene: the paper's random split."""
     UNSEEN = "unseen"
     """Neither scene nor object: the paper's split for novel objects."""
+    OBJECTS = "objects"
+    """Neither scene nor object, and the objects held out are named: the test objects of an experiment."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,18 +49,20 @@ class HoldOut:
 
     Args:
         split: a `SplitScheme` by its value.
-        fold: which fifth of the table is the test set, 0-4.
+        fold: which fifth of the table is the test set, 0-4; without meaning if objects are named.
         validation_fraction: share of the remaining trials for validation, to the nearest 1/n; 0 for none.
         seed: seed of the shuffling.
+        objects: names of the objects held out under `SplitScheme.OBJECTS`; without meaning otherwise.
 
     Raises:
-        InputError: if there is no such split or fold.
+        InputError: if there is no such split or fold, or objects should be held out and none is named.
     """
 
     split: str
     fold: int
     validation_fraction: float
     seed: int
+    objects: Sequence[str] | None = None
 
     def __post_init__(self) -> None:
         schemes = [scheme.value for scheme in SplitScheme]
@@ -68,6 +73,9 @@ class HoldOut:
         if not 0 <= self.fold < FOLDS:
             fix = f"choose one of 0 to {FOLDS - 1}"
             raise InputError(f"There is no fold {self.fold}", where="fold", fix=fix)
+        if self.split == SplitScheme.OBJECTS and not self.objects:
+            fix = "name them with dataset.data.hold_out.objects=[...], or choose another split"
+            raise InputError("No objects are named that could be held out", where="split=objects", fix=fix)
 
 
 def split_trials(trials: TrialTable, hold_out: HoldOut) -> Split:
@@ -76,7 +84,7 @@ def split_trials(trials: TrialTable, hold_out: HoldOut) -> Split:
     Validation trials share no scene with the others, except under `SplitScheme.SEEN`.
 
     Raises:
-        InputError: if there are too few trials, successes or objects.
+        InputError: if there are too few trials, successes or objects, or a named object has no trials.
     """
     labels, seed = trials.lifted, hold_out.seed
     scheme = SplitScheme(hold_out.split)
@@ -84,6 +92,8 @@ def split_trials(trials: TrialTable, hold_out: HoldOut) -> Split:
     if scheme is SplitScheme.UNSEEN:
         folds = object_folds(trials)
         is_test = np.array([folds[name] == hold_out.fold for name in trials.object_ids], dtype=bool)
+    elif scheme is SplitScheme.OBJECTS:
+        is_test = _is_of_objects(trials, hold_out.objects or ())
     else:
         is_test = _stratified(labels, groups, FOLDS, hold_out.fold, seed)
     rest, test = np.flatnonzero(~is_test), np.flatnonzero(is_test)
@@ -113,6 +123,17 @@ def object_folds(trials: TrialTable) -> dict[str, int]:
     ordered = sorted(successes, key=lambda name: (-successes[name], name))
     snake = [*range(FOLDS), *reversed(range(FOLDS))]
     return {name: snake[i % len(snake)] for i, name in enumerate(ordered)}
+
+
+def _is_of_objects(trials: TrialTable, objects: Sequence[str]) -> Bool[np.ndarray, "n"]:
+    unknown = sorted(set(objects) - set(trials.object_ids))
+    if unknown:
+        raise InputError(
+            f"The table has no executed trial of {', '.join(unknown)}",
+            where="dataset.data.hold_out.objects",
+            fix="name objects that occur in its column object_id",
+        )
+    return np.isin(trials.object_ids, list(objects))
 
 
 def _stratified(

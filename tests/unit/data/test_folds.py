@@ -11,6 +11,8 @@ from preshape.data.trial_table import TrialTable
 from preshape.errors import InputError
 
 TableMaker = Callable[..., TrialTable]
+SCHEMES = tuple(scheme for scheme in SplitScheme if scheme is not SplitScheme.OBJECTS)
+"""The splits that go through the table fold by fold."""
 
 
 def splits(trials: TrialTable, scheme: SplitScheme, seed: int = 0) -> list[Split]:
@@ -22,7 +24,7 @@ def trials(table: TableMaker) -> TrialTable:
     return table(n_scenes=80, n_objects=13)
 
 
-@pytest.mark.parametrize("scheme", SplitScheme)
+@pytest.mark.parametrize("scheme", SCHEMES)
 def test_every_trial_is_in_one_part_and_tested_once(trials: TrialTable, scheme: SplitScheme) -> None:
     tested: Counter[int] = Counter()
     for split in splits(trials, scheme):
@@ -44,6 +46,23 @@ def test_unseen_objects_are_never_learned_from(trials: TrialTable) -> None:
     for split in splits(trials, SplitScheme.UNSEEN):
         assert set(objects[split.test]).isdisjoint(objects[split.train])
         assert set(objects[split.test]).isdisjoint(objects[split.validation])
+
+
+def test_named_objects_are_all_that_is_tested(trials: TrialTable) -> None:
+    named = sorted(set(trials.object_ids))[2:5]
+    split = split_trials(trials, HoldOut("objects", 0, 0.1, 0, named))
+    objects = np.array(trials.object_ids)
+    assert set(objects[split.test]) == set(named)
+    assert set(objects[np.concatenate((split.train, split.validation))]).isdisjoint(named)
+    parts = np.concatenate((split.train, split.validation, split.test))
+    assert sorted(parts.tolist()) == list(range(len(trials)))
+
+
+def test_objects_that_are_not_named_or_not_there_are_refused(trials: TrialTable) -> None:
+    with pytest.raises(InputError, match="No objects are named"):
+        HoldOut("objects", 0, 0.1, 0)
+    with pytest.raises(InputError, match="teapot"):
+        split_trials(trials, HoldOut("objects", 0, 0.1, 0, [trials.object_ids[0], "teapot"]))
 
 
 @pytest.mark.parametrize("scheme", [SplitScheme.SCENES, SplitScheme.SEEN])
