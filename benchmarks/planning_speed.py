@@ -6,7 +6,7 @@ from comparison import Comparison, side_by_side
 from torch import Tensor
 
 from preshape.models.config_cnn import ConfigCNN
-from preshape.perception.patch import PATCH_SIZE
+from preshape.perception.object_view import PATCH_SIZE
 from preshape.perception.view_batch import ViewBatch
 from preshape.planning.bounds import Bounds
 from preshape.planning.gradient_ascent import GradientAscent

@@ -14,7 +14,7 @@ from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 
 import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
-from preshape.data.images import PatchCache
+from preshape.data.view_cache import ViewCache
 from preshape.data.scene import Scene
 from preshape.data.tables import SCENES_FILE, read_scenes
 from preshape.paths import project_root
@@ -55,7 +55,7 @@ def _render(count: int) -> tuple[float, float, float, int]:
     renderer = instantiate(cfg.camera.renderer)
     some = scenes[:: -(-len(scenes) // (count + WARM_UP_SCENES))]
     with tempfile.TemporaryDirectory() as folder:
-        cache = PatchCache(folder, renderer)
+        cache = ViewCache(folder, renderer)
         patch_s = _seconds(cache.make, some)
         reading_s = _seconds(cache.__getitem__, some)
     return patch_s, _seconds(replace(renderer, noise=None), some), reading_s, len(scenes)

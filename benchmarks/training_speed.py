@@ -8,7 +8,7 @@ from torch import Tensor
 from torch.nn.functional import binary_cross_entropy_with_logits
 
 from preshape.models.config_cnn import ConfigCNN
-from preshape.perception.patch import PATCH_SIZE
+from preshape.perception.object_view import PATCH_SIZE
 from preshape.perception.view_batch import ViewBatch
 
 BATCH, RUNS = 8, 7

@@ -1,10 +1,10 @@
-"""Rendering the patches of many scenes in worker processes."""
+"""Rendering the views of many scenes in worker processes."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from preshape.data.images import PatchCache, one_by_one
+from preshape.data.view_cache import ViewCache, one_by_one
 from preshape.data.scene import Scene
 from preshape.errors import InputError
 from sim.workers import BeginStep, Work, Workers, available_cores
@@ -15,7 +15,7 @@ SCENES_PER_WORKER = 30
 
 @dataclass(frozen=True)
 class ParallelRendering:
-    """A `preshape.data.images.PatchMaker`: one thread and one renderer in each of several processes.
+    """A `preshape.data.view_cache.ViewMaker`: one thread and one renderer in each of several processes.
 
     Args:
         workers: number of processes; None takes every core.
@@ -25,11 +25,11 @@ class ParallelRendering:
     workers: int | None = None
     scene_limit_s: float = 120.0
 
-    def __call__(self, cache: PatchCache, scenes: Sequence[Scene]) -> Iterator[Scene]:
-        """Make the patches; yields each scene when its patch is there.
+    def __call__(self, cache: ViewCache, scenes: Sequence[Scene]) -> Iterator[Scene]:
+        """Make the views; yields each scene when its view is there.
 
         Raises:
-            InputError: if a patch cannot be made, or its worker dies again and again.
+            InputError: if a view cannot be made, or its worker dies again and again.
         """
         count = min(self.workers or available_cores(), -(-len(scenes) // SCENES_PER_WORKER))
         if count <= 1:
@@ -43,18 +43,18 @@ class ParallelRendering:
                 for number, made in workers.wait(1.0):
                     if not made:
                         raise InputError(
-                            f"The patch of scene {scenes[number].scene_id} cannot be made: its worker fails",
+                            f"The view of scene {scenes[number].scene_id} cannot be made: its worker fails",
                             where=cache.path(scenes[number]),
                             fix="look at the warnings above; if memory is short, take fewer workers",
                         )
                     yield scenes[number]
 
 
-def _renderer(cache: PatchCache, scenes: Sequence[Scene]) -> Work[int, bool]:
+def _renderer(cache: ViewCache, scenes: Sequence[Scene]) -> Work[int, bool]:
     return partial(_render, cache, scenes)
 
 
-def _render(cache: PatchCache, scenes: Sequence[Scene], number: int, begin: BeginStep) -> bool:
+def _render(cache: ViewCache, scenes: Sequence[Scene], number: int, begin: BeginStep) -> bool:
     scene = scenes[number]
     # Another process may fill the same cache.
     return begin("rendering") and (cache.holds(scene) or cache.make(scene) is not None)

@@ -9,7 +9,7 @@ from torch import Tensor, nn
 from preshape.errors import InputError
 from preshape.files import atomic_path
 from preshape.models.success_model import IMAGE_CHANNELS, GraspNetwork, SuccessModel
-from preshape.perception.patch import PATCH_SIZE
+from preshape.perception.object_view import PATCH_SIZE
 from preshape.perception.view_batch import ViewBatch
 
 INPUTS = ("patch", "intrinsics", "theta")

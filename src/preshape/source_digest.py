@@ -19,7 +19,7 @@ def source_digest(module: str) -> str:
     Comments, docstrings and layout do not count.
 
     Args:
-        module: full name, such as `preshape.perception.patch`.
+        module: full name, such as `preshape.perception.object_view`.
     """
     codes: dict[str, str] = {}
     waiting = [module]

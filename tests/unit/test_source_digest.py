@@ -50,4 +50,5 @@ def test_the_digest_follows_the_code(root: Path, name: str, old: str, new: str, 
 
 def test_the_real_renderer_and_perception_are_covered() -> None:
     module.source_digest.cache_clear()
-    assert len({module.source_digest(name) for name in ("sim.scene_renderer", "preshape.data.images")}) == 2
+    modules = ("sim.scene_renderer", "preshape.data.view_cache")
+    assert len({module.source_digest(name) for name in modules}) == 2

@@ -43,10 +43,16 @@ class BoundedFolder:
             return self.path(name).is_file()
         return True
 
-    def read(self, name: str) -> bytes | None:
-        """Content of a file, which is now the most recently used; None if there is none."""
+    def read(self, name: str, size: int = -1) -> bytes | None:
+        """Content of a file, which is now the most recently used; None if there is none.
+
+        Args:
+            name: the file.
+            size: read so many bytes at most; -1 for all.
+        """
         try:
-            content = self.path(name).read_bytes()
+            with self.path(name).open("rb") as file:
+                content = file.read(size)
         except OSError:
             return None
         self.use(name)

@@ -11,9 +11,9 @@ from torch.utils.data import DataLoader, Sampler
 from preshape.data.batches import InOrder, PositiveBatches
 from preshape.data.folds import HoldOut, split_trials
 from preshape.data.grasp_dataset import GraspBatch, GraspDataset
-from preshape.data.images import PatchCache
 from preshape.data.tables import data_hash, read_data_set
 from preshape.data.trial_table import TableOrigin, TrialTable
+from preshape.data.view_cache import ViewCache
 from preshape.errors import InputError
 from preshape.grasps.space import GraspSpace
 
@@ -42,7 +42,7 @@ class GraspDataModule(lightning.LightningDataModule):
         folder: the data set: `scenes.parquet` and `trials.parquet`.
         origin: robot, object set and camera that they must have been collected with.
         space: grasp space of theta.
-        patches: makes and keeps the patches of the scenes.
+        views: makes and keeps the views of the scenes.
         hold_out: which trials are held out.
         batches: how the others are drawn.
         trials: how many executed trials are used, from the first of the table on; None for all.
@@ -59,14 +59,14 @@ class GraspDataModule(lightning.LightningDataModule):
         folder: str | Path,
         origin: TableOrigin,
         space: GraspSpace,
-        patches: PatchCache,
+        views: ViewCache,
         hold_out: HoldOut,
         batches: BatchSettings,
         trials: int | None = None,
     ) -> None:
         super().__init__()
         self._folder, self._origin, self._space = Path(folder), origin, space
-        self._patches = patches
+        self._views = views
         self._hold_out, self.batches, self._wanted = hold_out, batches, trials
 
     def setup(self, stage: str | None = None) -> None:
@@ -87,11 +87,11 @@ class GraspDataModule(lightning.LightningDataModule):
             )
         executed = self._first(trials.executed)
         split = split_trials(executed, self._hold_out)
-        self._patches.fill([scenes.by_id[scene_id] for scene_id in np.unique(executed.scene_ids).tolist()])
+        self._views.fill([scenes.by_id[scene_id] for scene_id in np.unique(executed.scene_ids).tolist()])
 
         def part(rows: Int[np.ndarray, "rows"]) -> GraspDataset:
             mask = np.isin(np.arange(len(executed)), rows)
-            return GraspDataset(executed.where(mask), scenes.by_id, self._patches)
+            return GraspDataset(executed.where(mask), scenes.by_id, self._views)
 
         self.train, self.validation, self.test = part(split.train), part(split.validation), part(split.test)
         self.data_hash = data_hash(self._folder)
@@ -123,6 +123,12 @@ class GraspDataModule(lightning.LightningDataModule):
                 where=self._folder,
                 fix="collect more trials with `python sim/collect.py`",
             )
+
+    def leave_out_patches(self) -> None:
+        """Show views without patches, for networks that do not look at them."""
+        self.train, self.validation, self.test = (
+            part.without_patches() for part in (self.train, self.validation, self.test)
+        )
 
     def train_dataloader(self) -> DataLoader[GraspBatch]:
         """Random batches with enough positives."""

@@ -1,6 +1,7 @@
 """Labelled grasps as examples for a network."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -9,11 +10,10 @@ from jaxtyping import Float, Float16
 from torch import Tensor
 from torch.utils.data import Dataset
 
-from preshape.data.images import PatchCache
 from preshape.data.scene import Scene
 from preshape.data.trial_table import TrialTable
-from preshape.perception.patch import ObjectPatch, object_centre
-from preshape.perception.view_batch import ViewBatch, patch_intrinsics
+from preshape.data.view_cache import ViewCache
+from preshape.perception.view_batch import ViewBatch
 
 
 class GraspBatch(NamedTuple):
@@ -31,42 +31,57 @@ class GraspBatch(NamedTuple):
 
 
 class GraspDataset(Dataset[GraspBatch]):
-    """Executed trials with the patches of their scenes, which stay on disk until they are used.
+    """Executed trials with the views of their scenes.
+
+    Patches stay on disk until they are used. All else fits into memory.
 
     Args:
         trials: executed trials; `reached` is what the network learns from.
         scenes: their scenes, by number.
-        cache: patches of scenes.
+        cache: views of scenes.
+        with_patches: whether the views come with patches, which are most of the time that they take.
     """
 
-    def __init__(self, trials: TrialTable, scenes: Mapping[int, Scene], cache: PatchCache) -> None:
+    def __init__(
+        self, trials: TrialTable, scenes: Mapping[int, Scene], cache: ViewCache, with_patches: bool = True
+    ) -> None:
         self.trials = trials
-        self._scenes = scenes
-        self._cache = cache
+        self._scenes, self._cache, self._with_patches = scenes, cache, with_patches
         self.theta: Float[Tensor, "n d"] = torch.as_tensor(trials.reached, dtype=torch.float32)
         self.labels: Float[Tensor, "n"] = torch.as_tensor(trials.lifted.astype(np.float32))
+        self._scene_ids, self._scene_of = np.unique(trials.scene_ids, return_inverse=True)
 
     def __len__(self) -> int:
         return len(self.trials)
 
     def lifted(self) -> "GraspDataset":
         """The examples that lifted."""
-        return GraspDataset(self.trials.where(self.trials.lifted), self._scenes, self._cache)
+        return GraspDataset(
+            self.trials.where(self.trials.lifted), self._scenes, self._cache, self._with_patches
+        )
+
+    def without_patches(self) -> "GraspDataset":
+        """The same examples for a network that does not look at patches."""
+        return GraspDataset(self.trials, self._scenes, self._cache, with_patches=False)
 
     def __getitem__(self, rows: Sequence[int]) -> GraspBatch:
         """The examples of these rows as one batch; patches in half precision, as they are stored."""
-        scenes = [self._scenes[scene_id] for scene_id in self.trials.scene_ids[rows].tolist()]
-        patches = [self._cache[scene] for scene in scenes]
-        channels = np.stack([patch.channels for patch in patches])
-        intrinsics = [_intrinsics(scene, patch) for scene, patch in zip(scenes, patches, strict=True)]
-        view = ViewBatch(torch.from_numpy(channels), torch.tensor(np.stack(intrinsics), dtype=torch.float32))
+        of_scenes = torch.from_numpy(self._scene_of[rows])
+        view = ViewBatch(*(part[of_scenes] for part in self._views_without_patches))
+        if self._with_patches:
+            ids = self._scene_ids[of_scenes].tolist()
+            patches = [self._cache[self._scenes[scene_id]].channels for scene_id in ids]
+            view = view._replace(patch=torch.from_numpy(np.stack(patches)))
         return GraspBatch(view, self.theta[rows], self.labels[rows])
 
     def patches(self) -> Iterator[Float16[Tensor, "8 h w"]]:
         """The patch of every scene, once."""
-        for scene_id in np.unique(self.trials.scene_ids).tolist():
+        for scene_id in self._scene_ids.tolist():
             yield torch.from_numpy(self._cache[self._scenes[scene_id]].channels)
 
-
-def _intrinsics(scene: Scene, patch: ObjectPatch) -> Float[np.ndarray, "4"]:
-    return patch_intrinsics(scene.camera, object_centre(patch.T_camera_box, scene.camera))
+    @cached_property
+    def _views_without_patches(self) -> ViewBatch:
+        """What is known of every scene besides its patch."""
+        scenes = [self._scenes[scene_id] for scene_id in self._scene_ids.tolist()]
+        clouds = [self._cache.cloud(scene) for scene in scenes]
+        return ViewBatch.of(clouds, [scene.camera for scene in scenes])

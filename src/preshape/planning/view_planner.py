@@ -10,10 +10,10 @@ from preshape.errors import InputError
 from preshape.grasps.heuristic import HeuristicSettings, InitialGrasp, heuristic_grasps
 from preshape.grasps.space import GraspSpace
 from preshape.models.success_model import GraspNetwork, SuccessModel
+from preshape.perception.object_view import object_view
 from preshape.perception.observation import Observation
-from preshape.perception.patch import object_centre, object_patch
 from preshape.perception.segmentation import SegmentationSettings, SegmentedObject, segment
-from preshape.perception.view_batch import ViewBatch, patch_intrinsics
+from preshape.perception.view_batch import ViewBatch
 from preshape.planning.bounds import Bounds, BoxSize
 from preshape.planning.grasp_plan import GraspPlan
 from preshape.planning.objective import Objective, SuccessObjective, UnknownSuccess
@@ -72,7 +72,6 @@ class ViewPlanner:
                 where="model",
                 fix="choose one that does, such as model=config_cnn",
             )
-        centre = object_centre(segmented.T_camera_box, observation.camera)
-        patch = torch.from_numpy(object_patch(observation, centre))
-        intrinsics = torch.from_numpy(patch_intrinsics(observation.camera, centre))
-        return SuccessObjective(self.model, ViewBatch(patch[None], intrinsics[None]))
+        view = object_view(observation, segmented)
+        patch = torch.from_numpy(view.channels)[None]
+        return SuccessObjective(self.model, ViewBatch.of([view.cloud], [observation.camera], patch))

@@ -9,9 +9,9 @@ from synthetic_scenes import ORIGIN, SIZES_M, BoxRenderer, allegro_space, write_
 
 from preshape.data.data_module import BatchSettings, GraspDataModule
 from preshape.data.folds import HoldOut
-from preshape.data.images import PatchCache
 from preshape.data.tables import read_scenes, read_trials
 from preshape.data.trial_table import TableOrigin
+from preshape.data.view_cache import ViewCache
 from preshape.errors import InputError
 
 N_SCENES = 15
@@ -29,7 +29,7 @@ def make_module(folder: Path, origin: TableOrigin = ORIGIN, trials: int | None =
         folder=folder,
         origin=origin,
         space=allegro_space(),
-        patches=PatchCache(folder / "cache", BoxRenderer()),
+        views=ViewCache(folder / "cache", BoxRenderer()),
         hold_out=HoldOut("scenes", fold=0, validation_fraction=0.25, seed=0),
         batches=BatchSettings(batch_size=4, min_positives=1, batches_per_epoch=5, seed=0),
         trials=trials,
@@ -78,13 +78,24 @@ def test_points_of_the_camera_frame_are_found_in_the_patch(folder: Path) -> None
     data.setup()
     scenes = read_scenes(folder / "scenes.parquet").by_id
     (view, *_), *_ = data.test_dataloader()
-    for scene_id, patch, numbers in zip(data.test.trials.scene_ids.tolist(), *view, strict=False):
+    scene_ids = data.test.trials.scene_ids.tolist()
+    for scene_id, patch, numbers in zip(scene_ids, view.patch, view.intrinsics, strict=False):
         scene = scenes[scene_id]
         top = scene.T_world_object @ (0, 0, SIZES_M[scene.object_id][2] / 2 - 0.01, 1)
         x, y, depth, _ = np.linalg.inv(scene.camera.T_world_camera) @ top
         fx, fy, cx, cy = numbers.tolist()
         seen = patch[:3, round(fy * y / depth + cy), round(fx * x / depth + cx)]
         assert seen.tolist() == pytest.approx([200 / 255, 40 / 255, 40 / 255], abs=1e-3)
+
+
+def test_views_may_come_without_patches(folder: Path) -> None:
+    data = make_module(folder)
+    data.setup()
+    batch, *_ = data.test_dataloader()
+    data.leave_out_patches()
+    without, *_ = data.test_dataloader()
+    assert without.view.patch.shape == (len(batch.label), 8, 0, 0)
+    assert all(torch.equal(one, other) for one, other in zip(without.view[1:], batch.view[1:], strict=True))
 
 
 def test_a_table_collected_with_something_else_is_refused(folder: Path) -> None:

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import pytest
 import torch
+from synthetic_views import view_of
 from torch import Tensor
 
 from preshape.hands.allegro import allegro_hand
@@ -35,7 +36,7 @@ def view() -> ViewBatch:
     """Two images without edges, where finite differences would depend on their step."""
     coarse = torch.randn(2, 8, 40, 40, generator=torch.Generator().manual_seed(1))
     patch = torch.nn.functional.interpolate(coarse, size=400, mode="bicubic")
-    return ViewBatch(patch, torch.tensor([[525.0, 525.0, 200.0, 190.0], [525.0, 530.0, 150.0, 200.0]]))
+    return view_of(patch, [[525.0, 525.0, 200.0, 190.0], [525.0, 530.0, 150.0, 200.0]])
 
 
 @pytest.fixture
@@ -90,6 +91,17 @@ def test_features_and_head_make_the_forward_pass(model: SuccessModel, view: View
     torch.testing.assert_close(model.head(model.features(view), theta), model(view, theta))
 
 
+def test_calibration_moves_and_divides_every_logit(
+    model: SuccessModel, view: ViewBatch, theta: Tensor
+) -> None:
+    raw, features = model(view, theta), model.features(view)
+    assert torch.equal(raw, model.raw_head(features, theta))
+    model.calibrate(logit_shift=0.5, temperature=2.0)
+    for calibrated in (model(view, theta), model.head(features, theta)):
+        torch.testing.assert_close(calibrated, (raw + 0.5) / 2.0)
+    assert {"logit_shift", "temperature"} <= set(model.state_dict())
+
+
 def test_grasps_may_share_one_view(model: SuccessModel, view: ViewBatch, theta: Tensor) -> None:
     shared = model.head(model.features(first(view)), theta)
     repeated = ViewBatch(*(part.expand(2, *part.shape[1:]) for part in first(view)))
@@ -123,7 +135,7 @@ def test_dropout_works_in_training_only(model: SuccessModel, view: ViewBatch, th
 
 
 def test_half_precision_patches_are_taken(model: SuccessModel, view: ViewBatch, theta: Tensor) -> None:
-    halves = ViewBatch(view.patch.half(), view.intrinsics)
+    halves = view._replace(patch=view.patch.half())
     torch.testing.assert_close(model(halves, theta), model(view, theta), rtol=0.02, atol=0.02)
 
 
@@ -137,8 +149,8 @@ def test_the_networks_of_the_hand_see_where_it_is() -> None:
     for row, column in ((75, 75), (350, 350)):
         patch = torch.zeros(1, 8, 400, 400)
         patch[:, :, row - 5 : row + 5, column - 5 : column + 5] = 1.0
-        marks.append(model(ViewBatch(patch, torch.tensor([[500.0, 500.0, 200.0, 200.0]])), theta))
-    blank = model(ViewBatch(torch.zeros(1, 8, 400, 400), torch.tensor([[500.0, 500.0, 200.0, 200.0]])), theta)
+        marks.append(model(view_of(patch, [[500.0, 500.0, 200.0, 200.0]]), theta))
+    blank = model(view_of(torch.zeros(1, 8, 400, 400), [[500.0, 500.0, 200.0, 200.0]]), theta)
     assert not torch.equal(marks[0], blank)
     assert torch.equal(marks[1], blank)
 
@@ -146,7 +158,7 @@ def test_the_networks_of_the_hand_see_where_it_is() -> None:
 def test_regression_learns_a_known_grasp() -> None:
     torch.manual_seed(0)
     model = RegressionCNN(*SPACE, keep_prob=1.0, ridge=0.0)
-    view = ViewBatch(torch.randn(2, 8, 400, 400), torch.ones(2, 4))
+    view = view_of(torch.randn(2, 8, 400, 400), [[1.0] * 4] * 2)
     lifted = torch.randn(2, 14)
     model.fit_statistics(view.patch, lifted)
     optimizer = torch.optim.Adam(model.parameters(), lr=1e-2)

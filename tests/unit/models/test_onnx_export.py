@@ -6,6 +6,7 @@ import numpy as np
 import onnxruntime
 import pytest
 import torch
+from synthetic_views import view_of
 
 from preshape.errors import InputError
 from preshape.hands.allegro import allegro_hand
@@ -15,7 +16,6 @@ from preshape.models.regression_cnn import RegressionCNN
 from preshape.models.success_model import SuccessModel
 from preshape.onnx_export import INPUTS, OUTPUT, export_onnx
 from preshape.perception.hand_projection import HandProjection
-from preshape.perception.view_batch import ViewBatch
 
 SPACE = ("network", "allegro_palm14", 14)
 
@@ -32,7 +32,7 @@ def patches_cnn() -> SuccessModel:
 def test_onnx_runtime_agrees_with_torch(network: object, tmp_path: Path) -> None:
     torch.manual_seed(0)
     model = network().eval()
-    view = ViewBatch(torch.randn(2, 8, 400, 400), torch.tensor([[525.0, 520.0, 200.0, 190.0]]).repeat(2, 1))
+    view = view_of(torch.randn(2, 8, 400, 400), [[525.0, 520.0, 200.0, 190.0]] * 2)
     theta = 0.1 * torch.randn(2, 14)
     theta[:, 2] += 1.0
     model.fit_statistics(view.patch, theta)

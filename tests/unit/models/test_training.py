@@ -17,7 +17,7 @@ from torch import Tensor, nn
 from preshape.checkpoints import load_weights
 from preshape.data.data_module import BatchSettings, GraspDataModule
 from preshape.data.folds import HoldOut
-from preshape.data.images import PatchCache
+from preshape.data.view_cache import ViewCache
 from preshape.models.lightning_module import LearningSettings
 from preshape.models.regression_cnn import RegressionCNN
 from preshape.models.success_model import SuccessModel
@@ -43,7 +43,7 @@ class TinyNetwork(SuccessModel):
     def features(self, view: ViewBatch) -> Float[Tensor, "b 8"]:
         return self.normalize_patch(view.patch[:, :, ::40, ::40]).mean(dim=(2, 3))
 
-    def head(self, features: Float[Tensor, "f 8"], theta: Float[Tensor, "b 14"]) -> Float[Tensor, "b"]:
+    def raw_head(self, features: Float[Tensor, "f 8"], theta: Float[Tensor, "b 14"]) -> Float[Tensor, "b"]:
         joint = torch.cat((features.expand(len(theta), -1), self.normalize_theta(theta)), dim=1)
         return self.layers(joint).squeeze(1)
 
@@ -60,7 +60,7 @@ def make_data(folder: Path, validation_fraction: float) -> GraspDataModule:
         folder=folder,
         origin=ORIGIN,
         space=allegro_space(),
-        patches=PatchCache(folder / "cache", BoxRenderer()),
+        views=ViewCache(folder / "cache", BoxRenderer()),
         hold_out=HoldOut("scenes", fold=0, validation_fraction=validation_fraction, seed=0),
         batches=BatchSettings(batch_size=4, min_positives=1, batches_per_epoch=6, seed=0),
     )

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 import torch
+from synthetic_views import view_of
 
 from preshape.models.config_cnn import ConfigCNN
 from preshape.perception.view_batch import ViewBatch
@@ -19,7 +20,7 @@ def network() -> ConfigCNN:
 @pytest.fixture(scope="module")
 def view() -> ViewBatch:
     patch = torch.rand(1, 8, 400, 400, generator=torch.Generator().manual_seed(1))
-    return ViewBatch(patch, torch.tensor([[525.0, 525.0, 200.0, 200.0]]))
+    return view_of(patch, [[525.0, 525.0, 200.0, 200.0]])
 
 
 def some_theta(starts: int) -> torch.Tensor:

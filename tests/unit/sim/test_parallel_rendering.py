@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 from synthetic_scenes import BoxRenderer, make_scene
 
-from preshape.data.images import PatchCache
 from preshape.data.scene import Scene
+from preshape.data.view_cache import ViewCache
 from preshape.errors import InputError
 from preshape.perception.observation import Observation
 from sim import parallel_rendering
@@ -25,8 +25,8 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 
 def test_parallel_equals_serial(tmp_path: Path) -> None:
-    PatchCache(tmp_path / "serial", BoxRenderer()).fill(SCENES)
-    cache = PatchCache(tmp_path / "parallel", BoxRenderer(), maker=ParallelRendering(workers=2))
+    ViewCache(tmp_path / "serial", BoxRenderer()).fill(SCENES)
+    cache = ViewCache(tmp_path / "parallel", BoxRenderer(), maker=ParallelRendering(workers=2))
     kept = cache.make(SCENES[0]), cache.path(SCENES[0]).stat().st_ino
     cache.fill(SCENES)
     assert contents(tmp_path / "parallel") == contents(tmp_path / "serial")
@@ -44,6 +44,6 @@ class EmptyTable(BoxRenderer):
 
 
 def test_bad_input_comes_out_of_the_workers(tmp_path: Path) -> None:
-    cache = PatchCache(tmp_path, EmptyTable(), maker=ParallelRendering(workers=2))
+    cache = ViewCache(tmp_path, EmptyTable(), maker=ParallelRendering(workers=2))
     with pytest.raises(InputError, match="No object stands on the table"):
         cache.fill(SCENES)

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from preshape.geometry.camera import Camera
 from preshape.perception.image import eight_channel_image
+from preshape.perception.object_view import CLOUD_SIZE, PATCH_SIZE, object_cloud, object_patch, object_view
 from preshape.perception.observation import Observation
-from preshape.perception.patch import PATCH_SIZE, object_centre, object_patch
-from preshape.perception.segmentation import SegmentationSettings, segment
+from preshape.perception.segmentation import SegmentationSettings, SegmentedObject, segment
 
 RNG = np.random.default_rng(0)
 WAVES = 1.0 + 0.01 * np.sin(np.indices((48, 64)).sum(axis=0) / 5)
@@ -42,10 +42,25 @@ def test_patch_is_the_image_around_its_centre(u: float, v: float, size: int) -> 
 def test_the_object_is_in_the_middle_of_its_patch(table_top: Any, place: tuple[float, float]) -> None:
     observation = table_top.view(table_top.box((0.1, 0.06, 0.2), place), noise_seed=0)
     segmented = segment(observation, SegmentationSettings())
-    centre = object_centre(segmented.T_camera_box, observation.camera)
+    view = object_view(observation, segmented)
+    centre = view.cloud.centre(observation.camera)
     rows, columns = np.nonzero(segmented.mask)
     assert abs(rows.mean() - centre[1]) < 20
     assert abs(columns.mean() - centre[0]) < 10
-    patch, half = object_patch(observation, centre), PATCH_SIZE // 2
-    u, v = round(centre[0]), round(centre[1])
-    np.testing.assert_array_equal(patch[:3, half, half], observation.rgb[v, u].astype(np.float32) / 255)
+    half, u, v = PATCH_SIZE // 2, round(centre[0]), round(centre[1])
+    seen = observation.rgb[v, u].astype(np.float32) / 255
+    np.testing.assert_array_equal(view.channels[:3, half, half], seen)
+
+
+@pytest.mark.parametrize("pixels", [200, CLOUD_SIZE, 5000])
+def test_the_cloud_is_a_sample_of_the_objects_points(pixels: int) -> None:
+    points = np.random.default_rng(0).normal(size=(pixels, 3))
+    mask, plane = np.zeros((48, 64), dtype=bool), np.array([0.0, -1.0, 0.0, 0.5])
+    segmented = SegmentedObject(points, mask, plane, np.eye(4), np.ones(3))
+    cloud = object_cloud(segmented)
+    assert {tuple(point) for point in cloud.points} <= {tuple(point) for point in points.astype(np.float32)}
+    drawn, times = np.unique(cloud.points, axis=0, return_counts=True)
+    assert len(drawn) == min(pixels, CLOUD_SIZE)
+    assert times.max() == -(-CLOUD_SIZE // pixels)
+    np.testing.assert_array_equal(object_cloud(segmented).points, cloud.points)
+    np.testing.assert_array_equal(cloud.table, plane)

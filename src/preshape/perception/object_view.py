@@ -1,4 +1,4 @@
-"""Patches: fixed-size crops of the 8-channel image around a pixel (paper, section 3.1)."""
+"""What networks are shown of a view: the patch around the object (paper, section 3.1) and its points."""
 
 from dataclasses import dataclass, replace
 
@@ -8,29 +8,61 @@ from jaxtyping import Float, Float32
 from preshape.geometry.camera import Camera
 from preshape.perception.image import CHANNEL_NAMES, eight_channel_image
 from preshape.perception.observation import Observation
+from preshape.perception.segmentation import SegmentedObject
 from preshape.perception.surface import REACH_PX
 
 PATCH_SIZE = 400
 """Width and height of an object patch in pixels."""
+CLOUD_SIZE = 512
+"""Number of points in an object's cloud."""
+CLOUD_SEED = 0
 
 
 @dataclass(frozen=True, eq=False)
-class ObjectPatch:
-    """The patch around an object, and where the object is.
+class ObjectCloud:
+    """Where the object is, in the camera frame.
 
     Args:
-        channels: the 8 channels.
+        points: points of the object's visible surface (m), in random order, so that any part of them is a
+            fair sample; an object of fewer pixels repeats some.
+        table: the table's plane (a, b, c, d): unit normal up, n . p + d is the height of p over the table.
         T_camera_box: pose of the object's bounding box, whose centre the patch lies around.
     """
 
-    channels: Float[np.ndarray, "8 h w"]
+    points: Float32[np.ndarray, "512 3"]
+    table: Float[np.ndarray, "4"]
     T_camera_box: Float[np.ndarray, "4 4"]
 
+    def centre(self, camera: Camera) -> tuple[float, float]:
+        """Pixel coordinates (u, v) to which the centre of the object's bounding box projects."""
+        u, v = camera.project(self.T_camera_box[:3, 3])
+        return float(u), float(v)
 
-def object_centre(T_camera_box: Float[np.ndarray, "4 4"], camera: Camera) -> tuple[float, float]:
-    """Pixel coordinates (u, v) to which the centre of the object's bounding box projects."""
-    u, v = camera.project(T_camera_box[:3, 3])
-    return float(u), float(v)
+
+@dataclass(frozen=True, eq=False)
+class ObjectView:
+    """What networks are shown of a view.
+
+    Args:
+        channels: the 8 channels of the patch around the object.
+        cloud: where the object is.
+    """
+
+    channels: Float[np.ndarray, "8 h w"]
+    cloud: ObjectCloud
+
+
+def object_view(observation: Observation, segmented: SegmentedObject) -> ObjectView:
+    """What networks are shown of a view in which the object was found."""
+    cloud = object_cloud(segmented)
+    return ObjectView(object_patch(observation, cloud.centre(observation.camera)), cloud)
+
+
+def object_cloud(segmented: SegmentedObject) -> ObjectCloud:
+    """A random sample of an object's points; the same object gives the same sample."""
+    order = np.random.default_rng(CLOUD_SEED).permutation(len(segmented.points))
+    points = segmented.points[np.resize(order, CLOUD_SIZE)].astype(np.float32)
+    return ObjectCloud(points, segmented.plane, segmented.T_camera_box)
 
 
 def object_patch(
