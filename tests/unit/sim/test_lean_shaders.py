@@ -52,5 +52,5 @@ def test_they_are_made_again_when_they_were_deleted(root: Path) -> None:
 
 
 def test_other_shaders_of_sapien_are_used_as_they_are(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(lean_shaders.EDITS, "deferred.frag", (("no such text", ""),))
+    monkeypatch.setitem(lean_shaders.EDITS, "default/deferred.frag", (("no such text", ""),))
     assert Path(lean_shaders.lean_shaders()) == lean_shaders.SHADERS / lean_shaders.PACK
