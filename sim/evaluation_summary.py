@@ -17,12 +17,15 @@ class PlannerSummary:
 
     Args:
         planner: its name.
+        scenes, answered: scenes on which it planned, and those of them on which a grasp could be executed.
         executed, lifted: numbers of trials.
         rate, low, high: lifted of executed with its 95 % Wilson interval; NaN if nothing was executed.
         predicted: mean success probability that the network gave the executed grasps.
     """
 
     planner: str
+    scenes: int
+    answered: int
     executed: int
     lifted: int
     rate: float
@@ -31,19 +34,31 @@ class PlannerSummary:
     predicted: float
 
     def __str__(self) -> str:
-        return f"{self.planner} {self.lifted} of {self.executed}"
+        missed = self.scenes - self.answered
+        beyond = f" ({missed} of {self.scenes} scenes without a grasp within reach)" if missed else ""
+        return f"{self.planner} {self.lifted} of {self.executed}{beyond}"
 
 
 def summarise(trials: TrialTable) -> list[PlannerSummary]:
     """Summaries of the planners in a table, in the order of their first trials."""
-    executed = trials.executed
     summaries = []
     for planner in dict.fromkeys(trials.rows["planner"]):
-        own = executed.where((executed.rows["planner"] == planner).to_numpy(dtype=bool))
-        n, lifted = len(own), int(own.lifted.sum())
-        rate = lifted / n if n else np.nan
-        predicted = float(own.rows["success_prob"].mean()) if n else np.nan
-        summaries.append(PlannerSummary(planner, n, lifted, rate, *wilson(lifted, n), predicted))
+        own = trials.where((trials.rows["planner"] == planner).to_numpy(dtype=bool))
+        executed = own.executed
+        n, lifted = len(executed), int(executed.lifted.sum())
+        summaries.append(
+            PlannerSummary(
+                planner=planner,
+                scenes=len(set(own.scene_ids.tolist())),
+                answered=len(set(executed.scene_ids.tolist())),
+                executed=n,
+                lifted=lifted,
+                rate=lifted / n if n else np.nan,
+                low=wilson(lifted, n)[0],
+                high=wilson(lifted, n)[1],
+                predicted=float(executed.rows["success_prob"].mean()) if n else np.nan,
+            )
+        )
     return summaries
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from omegaconf import DictConfig, OmegaConf
 
 from preshape.paths import project_root
+from preshape.source_digest import source_digest
 
 SOURCES = (
     "sim",
@@ -37,6 +38,22 @@ def fingerprint(*parts: Any, cache: str) -> str:
     text = json.dumps([plain, _source_digest(), {name: version(name) for name in PACKAGES}], sort_keys=True)
     text = text.replace(json.dumps(cache)[1:-1], "cache")
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def code_of(config: Any) -> list[str]:
+    """Digests of the code behind all that a configuration names by `_target_`.
+
+    Args:
+        config: a configuration node, or what it holds.
+    """
+    if isinstance(config, DictConfig):
+        config = OmegaConf.to_container(config, resolve=True)
+    if isinstance(config, list):
+        return [digest for entry in config for digest in code_of(entry)]
+    if not isinstance(config, dict):
+        return []
+    own = [source_digest(config["_target_"].rpartition(".")[0])] if "_target_" in config else []
+    return own + [digest for entry in config.values() for digest in code_of(entry)]
 
 
 @cache
