@@ -9,18 +9,17 @@ from torch import Tensor, nn
 from preshape.errors import InputError
 from preshape.files import atomic_path
 from preshape.models.success_model import IMAGE_CHANNELS, GraspNetwork, SuccessModel
-from preshape.perception.object_view import PATCH_SIZE
+from preshape.perception.object_view import CLOUD_SIZE, PATCH_SIZE
 from preshape.perception.view_batch import ViewBatch
 
-INPUTS = ("patch", "intrinsics", "theta")
 OUTPUT = "logit"
 
 
 def export_onnx(path: str | Path, model: GraspNetwork, grasps: int = 1) -> None:
     """Write a success network, its normalisation included, atomically.
 
-    The file's inputs are those of a `ViewBatch` and theta for a fixed number b of grasps, each with its own
-    view: `patch` (b, 8, 400, 400), `intrinsics` (b, 4) and `theta` (b, d), in single precision. Its output
+    The file's inputs are what the network looks at (`GraspNetwork.looks_at`), in the shapes of a `ViewBatch`,
+    and last `theta`, for a fixed number b of grasps, each with its own view, in single precision. Its output
     `logit` (b) is the log odds of success.
 
     Args:
@@ -37,11 +36,11 @@ def export_onnx(path: str | Path, model: GraspNetwork, grasps: int = 1) -> None:
             where="model",
             fix="export a network that does, such as model=config_cnn",
         )
-    views = (torch.zeros(grasps, IMAGE_CHANNELS, PATCH_SIZE, PATCH_SIZE), torch.ones(grasps, 4))
+    example = _example(grasps)
     program = torch.onnx.export(
-        _SeparateInputs(model).eval(),
-        (*views, torch.ones(grasps, model.theta_dim)),
-        input_names=list(INPUTS),
+        _SeparateInputs(model, example).eval(),
+        (*(getattr(example, name) for name in model.looks_at), torch.ones(grasps, model.theta_dim)),
+        input_names=[*model.looks_at, "theta"],
         output_names=[OUTPUT],
         dynamo=True,
         verbose=False,
@@ -51,15 +50,25 @@ def export_onnx(path: str | Path, model: GraspNetwork, grasps: int = 1) -> None:
         program.save(temporary, external_data=False)
 
 
+def _example(views: int) -> ViewBatch:
+    return ViewBatch(
+        torch.zeros(views, IMAGE_CHANNELS, PATCH_SIZE, PATCH_SIZE),
+        torch.ones(views, 4),
+        torch.zeros(views, CLOUD_SIZE, 3),
+        torch.ones(views, 4),
+        torch.eye(4).repeat(views, 1, 1),
+    )
+
+
 class _SeparateInputs(nn.Module):
-    """A success network that takes its inputs one by one."""
+    """A success network that takes one by one what it looks at, and then theta."""
 
-    def __init__(self, model: SuccessModel) -> None:
+    def __init__(self, model: SuccessModel, example: ViewBatch) -> None:
         super().__init__()
-        self.model = model
+        self._model, self._example = model, example
 
-    def forward(
-        self, patch: Float[Tensor, "b 8 h w"], intrinsics: Float[Tensor, "b 4"], theta: Float[Tensor, "b d"]
-    ) -> Float[Tensor, "b"]:
-        logit: Tensor = self.model(ViewBatch(patch, intrinsics), theta)
+    def forward(self, *inputs: Float[Tensor, "b ..."]) -> Float[Tensor, "b"]:
+        *seen, theta = inputs
+        view = self._example._replace(**dict(zip(self._model.looks_at, seen, strict=True)))
+        logit: Tensor = self._model(view, theta)
         return logit

@@ -3,25 +3,20 @@
 import hashlib
 import logging
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 import lightning
-import numpy as np
-import torch
-from jaxtyping import Float64
 from safetensors.torch import save
-from torch.utils.data import DataLoader
 
 from preshape.checkpoints import save_weights, sidecar_path
 from preshape.data.data_module import GraspDataModule
-from preshape.data.grasp_dataset import GraspBatch
-from preshape.data.trial_table import TrialTable
-from preshape.evaluation.grasp_errors import GraspErrors, grasp_errors
-from preshape.evaluation.metrics import ClassificationMetrics, classification_metrics
-from preshape.evaluation.roc import save_roc
-from preshape.files import atomic_path, write_json
+from preshape.evaluation.grasp_errors import GraspErrors
+from preshape.evaluation.metrics import ClassificationMetrics
+from preshape.files import write_json
+from preshape.measuring import PICTURES, PREDICTIONS_FILE, Measurement, calibrate, measure
 from preshape.models.callbacks import KeepBest, Resumable, ShowProgress, TrackCurves
 from preshape.models.lightning_module import LearningSettings, learning_of
 from preshape.models.regression_cnn import RegressionCNN
@@ -32,7 +27,9 @@ from preshape.tracking import TrackedRun
 log = logging.getLogger(__name__)
 
 WEIGHTS_FILE = "model.safetensors"
-REPORT_FILES = ("predictions.parquet", "roc.png", "metrics.json")
+METRICS_FILE = "metrics.json"
+CURVES_FILE = "curves.json"
+REPORT_FILES = (PREDICTIONS_FILE, *PICTURES, CURVES_FILE, METRICS_FILE)
 
 
 @dataclass(frozen=True)
@@ -44,12 +41,17 @@ class TrainerSettings:
         accelerator: `cpu`, `gpu` or `auto`.
         precision: Lightning's name of the arithmetic, such as `32-true` or `bf16-mixed`.
         keep_best: whether to end with the weights of the lowest validation loss, rather than the last.
+        prior_correction: whether logits are moved to undo the oversampling of successes
+            (`preshape.evaluation.calibration.oversampling_shift`).
+        devices: how many GPUs, or processes on CPUs, train together.
     """
 
     learning: LearningSettings
     accelerator: str
     precision: Literal["32-true", "16-mixed", "bf16-mixed"]
     keep_best: bool
+    prior_correction: bool = False
+    devices: int = 1
 
 
 @dataclass(frozen=True)
@@ -66,14 +68,19 @@ class TrainingResult:
 
 
 def train(
-    model: GraspNetwork, data: GraspDataModule, settings: TrainerSettings, folder: Path, run: TrackedRun
+    model: GraspNetwork,
+    data: GraspDataModule,
+    settings: TrainerSettings,
+    folder: Path,
+    run: TrackedRun,
+    description: Mapping[str, Any] | None = None,
 ) -> TrainingResult:
     """Fit a network to the training trials and measure it on the test trials.
 
     A training that was interrupted goes on where it was, if it is started again with the same settings, data
-    and folder. Everything is written at the end: weights with sidecar, predictions, the ROC picture of a
-    network that predicts success, and last the metrics. The regression network learns from grasps that lifted
-    alone, and is measured on such.
+    and folder. Everything is written at the end: weights with sidecar, curves, predictions, pictures of a
+    network that predicts success, and last the metrics. Such a network is calibrated before it is measured.
+    The regression network learns from grasps that lifted alone, and is measured on such.
 
     Args:
         model: the network with its initial weights.
@@ -81,6 +88,7 @@ def train(
         settings: how and where to train.
         folder: where the files go.
         run: keeps curves and files.
+        description: what else the file of the metrics shall say.
 
     Raises:
         InputError: if the data cannot be used or the files cannot be written.
@@ -90,28 +98,37 @@ def train(
         data.keep_lifted()
     model.fit_statistics(data.train.patches(), data.train.theta)
     unfinished = folder / f"unfinished-{_identity(model, data, settings)}.ckpt"
-    _fit(model, data, settings, unfinished, run)
-    result = _measure(model, data, settings.learning, folder, run)
+    curves = _fit(model, data, settings, unfinished, run)
+    if isinstance(model, SuccessModel):
+        calibrate(model, data, prior_correction=settings.prior_correction)
+    write_json(folder / CURVES_FILE, {"points": curves})
+    seed = settings.learning.seed
+    measurement = measure(model, data, folder, seed)
+    _keep(model, data, measurement, folder, description or {}, seed)
+    scalars = {f"test_{name}": value for name, value in measurement.scalars().items()}
+    run.log(scalars, settings.learning.iterations)
+    keep_files(folder, run)
     for leftover in folder.glob("unfinished-*.ckpt"):
         leftover.unlink()
-    return result
+    return TrainingResult(measurement.metrics, folder / WEIGHTS_FILE)
 
 
-def predict(model: SuccessModel, loader: DataLoader[GraspBatch]) -> Float64[np.ndarray, "n"]:
-    """Success probabilities of all trials of a loader, in its order."""
-    model.eval()
-    device = next(model.parameters()).device
-    with torch.inference_mode():
-        logits = [model(batch.view.to(device), batch.theta.to(device)) for batch in loader]
-    return torch.sigmoid(torch.cat(logits).double()).cpu().numpy()
+def keep_files(folder: Path, run: TrackedRun) -> None:
+    """Keep the files of a finished training with its run."""
+    weights = folder / WEIGHTS_FILE
+    for file in (weights, sidecar_path(weights), *(folder / name for name in REPORT_FILES)):
+        if file.is_file():
+            run.keep(file)
 
 
 def _fit(
     model: GraspNetwork, data: GraspDataModule, settings: TrainerSettings, unfinished: Path, run: TrackedRun
-) -> None:
+) -> list[dict[str, float]]:
+    """Fit the weights; returns the points of the curves."""
     _quieten_lightning()
     validated = len(data.validation) > 0
-    callbacks = [ShowProgress(), TrackCurves(run), Resumable(unfinished)]
+    curves = TrackCurves(run)
+    callbacks = [ShowProgress(), curves, Resumable(unfinished)]
     if settings.keep_best and validated:
         callbacks.insert(0, KeepBest())
     trainer = lightning.Trainer(
@@ -143,58 +160,25 @@ def _fit(
         if isinstance(end.__context__, KeyboardInterrupt):
             raise KeyboardInterrupt from end
         raise
+    return curves.points
 
 
-def _measure(
-    model: GraspNetwork, data: GraspDataModule, settings: LearningSettings, folder: Path, run: TrackedRun
-) -> TrainingResult:
-    """Metrics on the test trials; writes and keeps all files, the metrics last."""
-    seed = settings.seed
-    metrics: ClassificationMetrics | GraspErrors
-    if isinstance(model, RegressionCNN):
-        metrics = _measure_grasps(model, data, folder)
-    else:
-        assert isinstance(model, SuccessModel)
-        metrics = _measure_success(model, data, seed, folder)
-    weights = folder / WEIGHTS_FILE
+def _keep(
+    model: GraspNetwork,
+    data: GraspDataModule,
+    measurement: Measurement,
+    folder: Path,
+    description: Mapping[str, Any],
+    seed: int,
+) -> None:
+    """Write weights, sidecar and, last of all, the metrics."""
+    figures = measurement.metrics.to_dict()
     save_weights(
-        weights, model, data_hash=data.data_hash, git_revision=git_revision(), metrics=metrics.to_dict()
+        folder / WEIGHTS_FILE, model, data_hash=data.data_hash, git_revision=git_revision(), metrics=figures
     )
-    write_json(folder / "metrics.json", {**provenance(seed), "model": model.name, **metrics.to_dict()})
-    run.log({f"test_{name}": value for name, value in metrics.scalars().items()}, settings.iterations)
-    for file in (weights, sidecar_path(weights), *(folder / name for name in REPORT_FILES)):
-        if file.is_file():
-            run.keep(file)
-    return TrainingResult(metrics, weights)
-
-
-def _measure_success(
-    model: SuccessModel, data: GraspDataModule, seed: int, folder: Path
-) -> ClassificationMetrics:
-    trials = data.test.trials
-    success_prob = predict(model, data.test_dataloader())
-    metrics = classification_metrics(
-        trials.lifted, success_prob, rng=np.random.default_rng(seed), groups=trials.scene_ids
-    )
-    _save_predictions(folder, trials, lifted=trials.lifted, success_prob=success_prob)
-    save_roc(folder / "roc.png", trials.lifted, success_prob, metrics)
-    return metrics
-
-
-def _measure_grasps(model: RegressionCNN, data: GraspDataModule, folder: Path) -> GraspErrors:
-    model.eval()
-    device = next(model.parameters()).device
-    with torch.inference_mode():
-        predicted = [model(batch.view.to(device)).double().cpu().numpy() for batch in data.test_dataloader()]
-    theta = np.concatenate(predicted)
-    _save_predictions(folder, data.test.trials, theta_predicted=list(theta))
-    return grasp_errors(theta, data.test.trials.reached)
-
-
-def _save_predictions(folder: Path, trials: TrialTable, **predictions: Any) -> None:
-    columns = trials.rows[["trial_id", "scene_id", "object_id"]].assign(**predictions)
-    with atomic_path(folder / "predictions.parquet") as temporary:
-        columns.to_parquet(temporary, index=False)
+    sizes = {"n_train": len(data.train), "n_validation": len(data.validation)}
+    content = {**provenance(seed), "model": model.name, **description, **sizes, **measurement.to_dict()}
+    write_json(folder / METRICS_FILE, content)
 
 
 def _identity(model: GraspNetwork, data: GraspDataModule, settings: TrainerSettings) -> str:

@@ -27,8 +27,12 @@ class GraspNetwork(nn.Module):
         name: name of the network, compared with that of a weights file.
         grasp_space: name of the grasp space of theta.
         theta_dim: number d of its parameters.
+
+    Attributes:
+        looks_at: the parts of a `ViewBatch` that it looks at.
     """
 
+    looks_at: tuple[str, ...] = ("patch", "intrinsics")
     image_mean: Tensor
     image_std: Tensor
     theta_mean: Tensor
@@ -51,9 +55,10 @@ class GraspNetwork(nn.Module):
             patches: patches (8, h, w) of the training scenes; values that are not finite are left out.
             theta: grasp configurations of the training trials.
         """
-        mean, std = channel_statistics(patches)
-        self.image_mean.copy_(mean)
-        self.image_std.copy_(std.clamp_min(MIN_IMAGE_STD))
+        if "patch" in self.looks_at:
+            mean, std = channel_statistics(patches)
+            self.image_mean.copy_(mean)
+            self.image_std.copy_(std.clamp_min(MIN_IMAGE_STD))
         finite = theta[theta.isfinite().all(dim=1)].double()
         self.theta_mean.copy_(finite.mean(dim=0))
         self.theta_std.copy_(finite.std(dim=0, correction=0).clamp_min(MIN_THETA_STD))

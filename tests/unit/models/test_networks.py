@@ -4,12 +4,14 @@ from collections.abc import Callable
 
 import pytest
 import torch
+from scipy.spatial.transform import Rotation
 from synthetic_views import view_of
 from torch import Tensor
 
 from preshape.hands.allegro import allegro_hand
 from preshape.hands.kinematics import HandKinematics
 from preshape.models.config_cnn import ConfigCNN
+from preshape.models.palm_points import PalmPoints
 from preshape.models.patches_cnn import PatchesCNN
 from preshape.models.regression_cnn import RegressionCNN
 from preshape.models.success_model import SuccessModel
@@ -22,6 +24,7 @@ NETWORKS: dict[str, Callable[[], SuccessModel]] = {
     "fixed on the object": lambda: ConfigCNN(*SPACE),
     "moving with the palm": lambda: ConfigCNN(*SPACE, hand=HAND),
     "patches of the hand": lambda: PatchesCNN(*SPACE, projection=HandProjection(HAND)),
+    "points in the palm's frame": lambda: PalmPoints(*SPACE),
 }
 
 
@@ -178,3 +181,26 @@ def test_ridge_regression_weighs_the_output_layer() -> None:
     lifted = torch.zeros(2, 14)
     expected = 0.5 * model.output.weight.square().sum()
     torch.testing.assert_close(model.loss(lifted, lifted), expected)
+
+
+def test_palm_points_depends_on_the_object_relative_to_the_palm_alone(view: ViewBatch, theta: Tensor) -> None:
+    """Turning object, table and hand together about the camera changes nothing."""
+    torch.manual_seed(0)
+    model = PalmPoints(*SPACE).double().eval()
+    view, theta = view.to(theta.double()), theta.double()
+    turn = Rotation.from_euler("xyz", (0.3, -0.5, 0.8))
+    matrix = torch.from_numpy(turn.as_matrix())
+    turned = theta.clone()
+    turned[:, :3] = theta[:, :3] @ matrix.T
+    turned[:, 3:6] = torch.from_numpy((turn * Rotation.from_euler("xyz", theta[:, 3:6])).as_euler("xyz"))
+    table = torch.cat((view.table[:, :3] @ matrix.T, view.table[:, 3:]), dim=1)
+    seen = view._replace(points=view.points @ matrix.T, table=table)
+    torch.testing.assert_close(model(seen, turned), model(view, theta))
+    assert not torch.allclose(model(view, turned), model(view, theta))
+
+
+def test_palm_points_sees_other_points_in_every_batch_of_a_training(view: ViewBatch, theta: Tensor) -> None:
+    torch.manual_seed(0)
+    model = PalmPoints(*SPACE, keep_prob=1.0)
+    assert not torch.equal(model.train()(view, theta), model(view, theta))
+    assert torch.equal(model.eval()(view, theta), model(view, theta))

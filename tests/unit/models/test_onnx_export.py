@@ -11,10 +11,11 @@ from synthetic_views import view_of
 from preshape.errors import InputError
 from preshape.hands.allegro import allegro_hand
 from preshape.models.config_cnn import ConfigCNN
+from preshape.models.palm_points import PalmPoints
 from preshape.models.patches_cnn import PatchesCNN
 from preshape.models.regression_cnn import RegressionCNN
 from preshape.models.success_model import SuccessModel
-from preshape.onnx_export import INPUTS, OUTPUT, export_onnx
+from preshape.onnx_export import OUTPUT, export_onnx
 from preshape.perception.hand_projection import HandProjection
 
 SPACE = ("network", "allegro_palm14", 14)
@@ -28,7 +29,11 @@ def patches_cnn() -> SuccessModel:
     return PatchesCNN(*SPACE, projection=HandProjection(allegro_hand()))
 
 
-@pytest.mark.parametrize("network", [config_cnn, patches_cnn])
+def palm_points() -> SuccessModel:
+    return PalmPoints(*SPACE)
+
+
+@pytest.mark.parametrize("network", [config_cnn, patches_cnn, palm_points])
 def test_onnx_runtime_agrees_with_torch(network: object, tmp_path: Path) -> None:
     torch.manual_seed(0)
     model = network().eval()
@@ -38,7 +43,7 @@ def test_onnx_runtime_agrees_with_torch(network: object, tmp_path: Path) -> None
     model.fit_statistics(view.patch, theta)
     export_onnx(tmp_path / "network.onnx", model, grasps=2)
     session = onnxruntime.InferenceSession(tmp_path / "network.onnx")
-    inputs = dict(zip(INPUTS, (part.numpy() for part in (*view, theta)), strict=True))
+    inputs = {name: getattr(view, name).numpy() for name in model.looks_at} | {"theta": theta.numpy()}
     (logit,) = session.run([OUTPUT], inputs)
     with torch.no_grad():
         np.testing.assert_allclose(logit, model(view, theta).numpy(), rtol=1e-4, atol=1e-4)

@@ -26,7 +26,7 @@ from preshape.tracking import TrackedRun, UntrackedRun
 from preshape.training import TrainerSettings, predict, train
 
 SETTINGS = TrainerSettings(
-    LearningSettings(iterations=24, learning_rate=1e-2, learning_rate_factor=0.1, seed=0),
+    LearningSettings(iterations=24, learning_rate=1e-2, schedule="steps", weight_decay=0.0, seed=0),
     accelerator="cpu",
     precision="32-true",
     keep_best=True,

@@ -1,0 +1,86 @@
+"""Palm points: a network that sees the object's points as the palm would."""
+
+import torch
+from jaxtyping import Float
+from torch import Tensor, nn
+
+from preshape.geometry.pose import rotation_from_euler_xyz
+from preshape.models.success_model import SuccessModel, xavier_weights
+from preshape.perception.view_batch import ViewBatch
+
+LENGTH_M = 0.1
+"""Unit of lengths inside the network, about the size of a hand."""
+SURROUNDINGS = 7
+"""Up, line of sight and height over the table: what is known of a grasp besides points and joints."""
+
+
+class PalmPoints(SuccessModel):
+    """Points of the object in the frame of the palm, pooled by their maximum; 22,529 parameters for d = 14.
+
+    Whether a grasp lifts depends on where the object is relative to the hand, and not on where both are in
+    the image. So the points p of the object's visible surface are taken into the palm's frame,
+    q = R(theta)^T (p - t(theta)), each goes through the same layers, which also know the joints, and the
+    maximum over all points goes on (Qi et al., "PointNet", CVPR 2017). Beside it go the joints, the palm's
+    height over the table, and the directions of up and of the camera in the palm's frame. All that is a
+    smooth function of theta, so that gradients with respect to a grasp are exact and cheap. Colours are not
+    looked at.
+
+    In training each batch sees another random part of the points.
+
+    Args:
+        name, grasp_space, theta_dim: see `GraspNetwork`.
+        points: number of points that are looked at.
+        width: units of the first layer of each point; the second has twice as many.
+        keep_prob: probability with which dropout keeps a unit of the fully connected layers.
+    """
+
+    looks_at = ("points", "table")
+
+    def __init__(
+        self,
+        name: str,
+        grasp_space: str,
+        theta_dim: int,
+        *,
+        points: int = 128,
+        width: int = 64,
+        keep_prob: float = 0.9,
+    ) -> None:
+        super().__init__(name, grasp_space, theta_dim)
+        self.points = points
+        drop = 1.0 - keep_prob
+        context = theta_dim - 6 + SURROUNDINGS
+        self.context_channel = nn.Sequential(nn.Linear(context, 32), nn.ReLU(), nn.Linear(32, width))
+        self.point_channel = nn.Linear(3, width)
+        self.pooled_channel = nn.Sequential(nn.ReLU(), nn.Linear(width, 2 * width), nn.ReLU())
+        self.joint_channel = nn.Sequential(
+            nn.Linear(2 * width + context, 64),
+            nn.ReLU(),
+            nn.Dropout(drop),
+            nn.Linear(64, 32),
+            nn.ReLU(),
+            nn.Dropout(drop),
+            nn.Linear(32, 1),
+        )
+        self.apply(xavier_weights)
+
+    def features(self, view: ViewBatch) -> ViewBatch:
+        """The views with the points that are looked at."""
+        total = view.points.shape[1]
+        chosen = torch.randperm(total)[: self.points] if self.training else slice(self.points)
+        return view._replace(points=view.points[:, chosen]).to(self.theta_mean)
+
+    def raw_head(self, features: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "b"]:
+        """Logits of b grasps before calibration, from b views or from one that they share."""
+        palm, rotation = theta[:, :3], rotation_from_euler_xyz(theta[:, 3:6])
+        points = (features.points - palm[:, None]) @ rotation / LENGTH_M
+        up, offset = features.table[:, :3], features.table[:, 3]
+        height = ((palm * up).sum(dim=1) + offset) / LENGTH_M
+        sight = nn.functional.normalize(-palm, dim=1)
+        directions = torch.stack((up.expand_as(palm), sight), dim=1) @ rotation
+        joints = self.normalize_theta(theta)[:, 6:]
+        context = torch.cat((joints, height[:, None], directions.flatten(1)), dim=1)
+        each = self.point_channel(points) + self.context_channel(context)[:, None]
+        pooled = self.pooled_channel(each).amax(dim=1)
+        logits: Tensor = self.joint_channel(torch.cat((pooled, context), dim=1))
+        return logits.squeeze(1)
