@@ -66,8 +66,8 @@ class GraspDataset(Dataset[GraspBatch]):
 
     def __getitem__(self, rows: Sequence[int]) -> GraspBatch:
         """The examples of these rows as one batch; patches in half precision, as they are stored."""
-        of_scenes = torch.from_numpy(self._scene_of[rows])
-        view = ViewBatch(*(part[of_scenes] for part in self._views_without_patches))
+        of_scenes = self._scene_of[rows]
+        view = ViewBatch(*(part[torch.from_numpy(of_scenes)] for part in self._views_without_patches))
         if self._with_patches:
             ids = self._scene_ids[of_scenes].tolist()
             patches = [self._cache[self._scenes[scene_id]].channels for scene_id in ids]
