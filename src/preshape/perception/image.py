@@ -20,5 +20,5 @@ def eight_channel_image(observation: Observation) -> Float32[np.ndarray, "8 h w"
     image[:3] /= 255
     image[3], image[4:7], image[7] = observation.depth, np.moveaxis(normals, -1, 0), curvature
     surface = image[3:]
-    surface[np.isnan(surface)] = 0
+    np.copyto(surface, 0, where=np.isnan(surface))
     return image

@@ -1,7 +1,7 @@
 """Normals and curvature of the surface that a depth image shows."""
 
 import numpy as np
-from jaxtyping import Float, Float32
+from jaxtyping import Float32
 
 from preshape.geometry.camera import Camera
 from preshape.perception.observation import Observation
@@ -10,8 +10,10 @@ REACH_PX = 6
 STEP_PX = 2
 MIN_NEIGHBOURS = 12
 MAX_JUMP = 0.02
-STRIP_ROWS = 6
-"""Rows that are worked on at once: few enough to stay in the processor's cache."""
+STRIP_ROWS = 4
+"""Rows whose neighbours are summed at once: few enough to stay in the processor's cache."""
+BLOCK_ROWS = 48
+"""Rows whose covariances are worked on at once: few enough as well, and fewer calls."""
 
 _STEPS = np.arange(-REACH_PX, REACH_PX + 1, STEP_PX, dtype=np.float32)
 _V, _U = (grid.ravel() for grid in np.meshgrid(_STEPS, _STEPS, indexing="ij"))
@@ -37,16 +39,17 @@ def normals_and_curvature(
     ray_x, ray_y = observation.camera.rays(np.float32)
     normals = np.empty((3, *depth.shape), dtype=np.float32)
     curvature = np.empty(depth.shape, dtype=np.float32)
-    for top in range(0, len(depth), STRIP_ROWS):
-        rows = slice(top, top + STRIP_ROWS)
+    for top in range(0, len(depth), BLOCK_ROWS):
+        rows = slice(top, top + BLOCK_ROWS)
         pixels = _pixel_covariance(depth[rows], neighbours[:, :, rows])
         covariance = _metric_covariance(pixels, ray_x, ray_y[rows], observation.camera)
-        normals[:, rows], smallest = _smallest_eigenpair(covariance)
-        away = normals[0, rows] * ray_x + normals[1, rows] * ray_y[rows] + normals[2, rows] > 0
-        normals[:, rows] = np.where(away, -normals[:, rows], normals[:, rows])
+        normal, smallest = _smallest_eigenpair(covariance)
+        towards_pixel = normal[0] * ray_x + normal[1] * ray_y[rows] + normal[2]
+        np.copysign(1, -towards_pixel, out=towards_pixel)
+        np.multiply(normal, towards_pixel, out=normals[:, rows])
         with np.errstate(invalid="ignore", divide="ignore"):
-            share = np.maximum(smallest / (covariance[0] + covariance[3] + covariance[5]), 0.0)
-        curvature[rows] = np.where(np.isnan(normals[0, rows]), np.nan, share)
+            share = np.maximum(smallest / (covariance[0] + covariance[3] + covariance[5]), 0)
+        curvature[rows] = np.where(np.isnan(normal[0]), np.nan, share)
     return np.moveaxis(normals, 0, -1), curvature
 
 
@@ -58,15 +61,11 @@ def _pixel_covariance(
     A neighbour is (u, v) pixels away, of depth z and d deeper than the pixel itself. Sums run over d, not z,
     so that single precision is enough.
     """
-    powers = np.empty((3, *neighbours.shape), dtype=np.float32)
-    near, jump, square = powers  # d^0, d^1 and d^2, or 0 for neighbours that do not count
-    np.subtract(neighbours, depth, out=jump)
-    np.abs(jump, out=square)
-    np.less(square, np.float32(MAX_JUMP) * depth, out=near, casting="unsafe")
-    jump *= near
-    np.multiply(jump, jump, out=square)
-    sums = np.stack([MOMENTS @ power.reshape(MOMENTS.shape[1], -1) for power in powers])
-    sums = sums.reshape(*sums.shape[:2], *depth.shape)
+    sums = np.empty((3, *MOMENTS.shape[:1], *depth.shape), dtype=np.float32)
+    for top in range(0, len(depth), STRIP_ROWS):
+        rows = slice(top, top + STRIP_ROWS)
+        powers = _powers(depth[rows], neighbours[:, :, rows])
+        sums[:, :, rows] = (MOMENTS @ powers).reshape(sums[:, :, rows].shape)
     count = sums[0, 0].copy()
     count[count < MIN_NEIGHBOURS] = np.nan
     (_, n_u, n_v, n_uu, n_uv, n_vv), (d, d_u, d_v, d_uu, d_uv, d_vv), (dd, dd_u, dd_v, *dd_2) = sums / count
@@ -87,17 +86,31 @@ def _pixel_covariance(
     )
 
 
+def _powers(
+    depth: Float32[np.ndarray, "h w"], neighbours: Float32[np.ndarray, "k k h w"]
+) -> Float32[np.ndarray, "3 k*k h*w"]:
+    """d^0, d^1 and d^2 of neighbours d deeper than the pixel; 0 for neighbours that do not count."""
+    powers = np.empty((3, *neighbours.shape), dtype=np.float32)
+    near, jump, square = powers
+    np.subtract(neighbours, depth, out=jump)
+    np.abs(jump, out=square)
+    np.less(square, np.float32(MAX_JUMP) * depth, out=near, casting="unsafe")
+    jump *= near
+    np.multiply(jump, jump, out=square)
+    return powers.reshape(3, MOMENTS.shape[1], -1)
+
+
 def _metric_covariance(
     pixels: Float32[np.ndarray, "6 h w"],
     ray_x: Float32[np.ndarray, "1 w"],
     ray_y: Float32[np.ndarray, "h 1"],
     camera: Camera,
-) -> Float[np.ndarray, "6 h w"]:
+) -> Float32[np.ndarray, "6 h w"]:
     """Covariance (m^2) of the neighbours' points: xx, xy, xz, yy, yz, zz.
 
     A neighbour's point lies at (x d + u z / fx, y d + v z / fy, d) from that of a pixel with the ray (x, y).
     """
-    uu, uv, ud, vv, vd, dd = pixels.astype(np.float64)
+    uu, uv, ud, vv, vd, dd = pixels
     uu, uv, ud = uu / camera.fx**2, uv / (camera.fx * camera.fy), ud / camera.fx
     vv, vd = vv / camera.fy**2, vd / camera.fy
     xz, yz = ud + ray_x * dd, vd + ray_y * dd
@@ -106,8 +119,8 @@ def _metric_covariance(
 
 
 def _smallest_eigenpair(
-    matrix: Float[np.ndarray, "6 h w"],
-) -> tuple[Float[np.ndarray, "3 h w"], Float[np.ndarray, "h w"]]:
+    matrix: Float32[np.ndarray, "6 h w"],
+) -> tuple[Float32[np.ndarray, "3 h w"], Float32[np.ndarray, "h w"]]:
     """Unit eigenvector and value of the smallest eigenvalue of symmetric matrices, in closed form.
 
     The eigenvalues are the roots of a cubic with three real roots (Smith 1961). The adjugate of the matrix
@@ -120,7 +133,7 @@ def _smallest_eigenpair(
     spread = np.sqrt((a * a + b * b + c * c + 2 * (xy * xy + xz * xz + yz * yz)) / 6)
     half_det = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz)
     with np.errstate(invalid="ignore", divide="ignore"):
-        angle = np.arccos(np.clip(half_det / (2 * spread**3), -1, 1)) / 3
+        angle = np.arccos(np.clip(half_det / (2 * spread * spread * spread), -1, 1)) / 3
     smallest = mean + 2 * spread * np.cos(angle + 2 * np.pi / 3)
     a, b, c = xx - smallest, yy - smallest, zz - smallest
     adjugate_x, adjugate_y, adjugate_z = b * c - yz * yz, a * c - xz * xz, a * b - xy * xy
