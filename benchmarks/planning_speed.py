@@ -30,7 +30,7 @@ class WholeNetwork(Objective):
         views = ViewBatch(*(part.expand(len(theta), *part.shape[1:]) for part in self._view))
         logit = self._model(views, theta.float()).double()
         torch.set_num_threads(planning_threads)
-        return Evaluation(logit, torch.zeros_like(logit))
+        return Evaluation.of(logit)
 
 
 def features_once(seed: int, flop_per_s: float) -> Comparison:

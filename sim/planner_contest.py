@@ -79,7 +79,7 @@ def build_evaluator(
 
     Args:
         laboratory: scenes, views and trials.
-        planners: for each name the `method` and the `box` of a planner (`conf/planner`).
+        planners: for each name the `method`, `box` and `constraint` of a planner (`conf/planner`).
         model, weights: the network and its trained weights.
         recorder: how trials are filmed.
 
@@ -88,7 +88,15 @@ def build_evaluator(
     """
     load_weights(weights, model)
     views = {
-        name: ViewPlanner(name, parts["method"], parts["box"], laboratory.space, laboratory.heuristic, model)
+        name: ViewPlanner(
+            name,
+            parts["method"],
+            parts["box"],
+            laboratory.space,
+            laboratory.heuristic,
+            model,
+            parts["constraint"],
+        )
         for name, parts in planners.items()
     }
     return Evaluator(laboratory, views, recorder)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from preshape.errors import InputError
 from preshape.hands.kinematics import HandKinematics
+from preshape.hands.volume import HandVolume
 
 PALM_LINK = "palm_link"
 TIP_LINKS = ("link_3.0_tip", "link_7.0_tip", "link_11.0_tip", "link_15.0_tip")
@@ -32,6 +33,27 @@ def allegro_hand(palm_offset_m: Sequence[float] = (0.0, 0.0, 0.0)) -> HandKinema
         tip_links=TIP_LINKS,
         preshape_joints=PRESHAPE_JOINTS,
         palm_offset_m=palm_offset_m,
+    )
+
+
+def allegro_volume(
+    palm_offset_m: Sequence[float] = (0.0, 0.0, 0.0), attached: Sequence[Sequence[float]] = ()
+) -> HandVolume:
+    """The space that the right Allegro hand takes up.
+
+    Args:
+        palm_offset_m: as for `allegro_hand`.
+        attached: spheres behind the palm, (x, y, z, radius) in the palm link (m).
+
+    Raises:
+        InputError: the hand's model is not installed.
+    """
+    return HandVolume.from_urdf(
+        allegro_urdf(),
+        allegro_hand(palm_offset_m),
+        palm_link=PALM_LINK,
+        tip_links=TIP_LINKS,
+        attached=attached,
     )
 
 

@@ -57,14 +57,22 @@ class Urdf:
         Raises:
             InputError: no such chain exists.
         """
-        joints: list[Joint] = []
+        return tuple(self._joint(self._joint_to[link]) for link in self.links(root, tip))
+
+    def links(self, root: str, tip: str) -> tuple[str, ...]:
+        """Links after link `root`, up to and with link `tip`: the children of the joints of `chain`.
+
+        Raises:
+            InputError: no such chain exists.
+        """
+        links: list[str] = []
         link = tip
         while link != root:
             if link not in self._joint_to:
                 raise self._error(f"The hand's URDF has no chain of joints from {root} to {tip}")
-            joints.append(self._joint(self._joint_to[link]))
+            links.append(link)
             link = self._joint_to[link].find("parent").get("link")
-        return tuple(reversed(joints))
+        return tuple(reversed(links))
 
     def collision_box(self, link: str) -> Box:
         """First box among the collision shapes of a link.
@@ -72,11 +80,20 @@ class Urdf:
         Raises:
             InputError: the link has none.
         """
-        for collision in self._robot.findall(f"link[@name='{link}']/collision"):
-            box = collision.find("geometry/box")
-            if box is not None:
-                return Box(_origin(collision), _numbers(box.get("size")))
+        for box in self.collision_boxes(link):
+            return box
         raise self._error(f"Link {link} of the hand's URDF has no collision box")
+
+    def collision_boxes(self, link: str) -> tuple[Box, ...]:
+        """Boxes among the collision shapes of a link; spheres count as the cubes around them."""
+        boxes = []
+        for collision in self._robot.findall(f"link[@name='{link}']/collision"):
+            box, sphere = collision.find("geometry/box"), collision.find("geometry/sphere")
+            if box is not None:
+                boxes.append(Box(_origin(collision), _numbers(box.get("size"))))
+            elif sphere is not None:
+                boxes.append(Box(_origin(collision), np.full(3, 2 * float(sphere.get("radius")))))
+        return tuple(boxes)
 
     def _joint(self, joint: Any) -> Joint:
         name, kind = joint.get("name"), joint.get("type")

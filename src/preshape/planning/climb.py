@@ -3,8 +3,8 @@
 import numpy as np
 from jaxtyping import Float64, Int64
 
-from preshape.planning.landscape import Point
-from preshape.planning.result import PlanStatus
+from preshape.planning.landscape import Landscape, Point
+from preshape.planning.result import PlanResult, PlanStatus, rank_by
 
 
 class Climb:
@@ -16,6 +16,8 @@ class Climb:
 
     Attributes:
         here: where the starts stand.
+        best: the best grasp of each start so far. Unless a barrier or a prior that is not climbed pushes it
+            away, a start stands on it.
         step: with which the next line search of each start begins.
         idle: how many of its last steps in a row gained no more than the tolerance.
         climbing: the starts that have not stopped.
@@ -24,8 +26,10 @@ class Climb:
 
     def __init__(self, first: Point, first_step: float) -> None:
         starts = len(first.theta)
+        self._first = first
         self.climbing = np.arange(starts)
         self.here = first[self.climbing]
+        self.best = first[self.climbing]
         self.step = np.full(starts, first_step)
         self.idle = np.zeros(starts, dtype=np.int64)
         self.status = [PlanStatus.ITERATION_LIMIT] * starts
@@ -38,7 +42,7 @@ class Climb:
 
     @property
     def history(self) -> tuple[tuple[float, ...], ...]:
-        """Success probability of each start before the climb and after each of its steps."""
+        """Success probability of each start's best grasp before the climb and after each of its steps."""
         return tuple(tuple(probs) for probs in self._probs)
 
     def move(
@@ -56,7 +60,9 @@ class Climb:
         self.idle[rows] = np.where(gain > tolerance, 0, self.idle[rows] + 1)
         self.here[rows] = to
         self.step[rows] = step
-        for row, prob in zip(rows.tolist(), to.success_prob.tolist(), strict=True):
+        better = (to.merit >= self.best.merit[rows]).nonzero()[0]
+        self.best[rows[better]] = to[better]
+        for row, prob in zip(rows.tolist(), self.best.success_prob[rows].tolist(), strict=True):
             self._probs[row].append(prob)
 
     def stop(self, rows: Int64[np.ndarray, "m"], status: PlanStatus) -> None:
@@ -65,3 +71,24 @@ class Climb:
             self.climbing = np.setdiff1d(self.climbing, rows)
         for row in rows.tolist():
             self.status[row] = status
+
+    def result(self, landscape: Landscape) -> PlanResult:
+        """The plan, after a climb in this landscape."""
+        first, best = self._first, self.best
+        allowed = (best.violation <= 0).tolist()
+        outcomes = zip(self.status, allowed, strict=True)
+        return PlanResult(
+            theta=best.theta,
+            success_prob=best.success_prob,
+            log_posterior=best.log_posterior,
+            initial_theta=first.theta,
+            initial_success_prob=first.success_prob,
+            initial_log_posterior=first.log_posterior,
+            ranking=rank_by(best.merit),
+            status=tuple(status if ok else PlanStatus.INFEASIBLE for status, ok in outcomes),
+            iterations=self.iterations,
+            evaluations=landscape.evaluations,
+            runtime_s=landscape.runtime_s,
+            climb=self.history,
+            violation_m=best.violation,
+        )

@@ -1,7 +1,6 @@
 """Projected gradient ascent inside the network: the paper's planner."""
 
 from dataclasses import dataclass
-from time import perf_counter
 from typing import Literal
 
 import numpy as np
@@ -12,7 +11,7 @@ from preshape.planning.climb import Climb
 from preshape.planning.landscape import Climbed, Landscape, Point
 from preshape.planning.line_search import LineSearch
 from preshape.planning.objective import Objective
-from preshape.planning.result import PlanResult, PlanStatus, rank_by
+from preshape.planning.result import PlanResult, PlanStatus
 from preshape.planning.threads import one_thread
 
 StepUnit = Literal["raw", "half_width"]
@@ -43,31 +42,15 @@ class GradientAscent:
 
     def plan(self, objective: Objective, initial: Float64[np.ndarray, "s d"], bounds: Bounds) -> PlanResult:
         """See `Planner`."""
-        begin = perf_counter()
         landscape = Landscape(objective, self.climbed)
         with one_thread():
-            first = landscape.at(bounds.project(initial))
-            climb = Climb(first, self.line_search.first_step)
+            climb = Climb(landscape.at(bounds.project(initial)), self.line_search.first_step)
             self._stop_where_flat(climb, climb.climbing, bounds)
             for _ in range(self.max_iterations):
                 if len(climb.climbing) == 0:
                     break
                 self._iterate(climb, landscape, bounds)
-        here = climb.here
-        return PlanResult(
-            theta=here.theta,
-            success_prob=here.success_prob,
-            log_posterior=here.log_posterior,
-            initial_theta=first.theta,
-            initial_success_prob=first.success_prob,
-            initial_log_posterior=first.log_posterior,
-            ranking=rank_by(here.log_posterior),
-            status=tuple(climb.status),
-            iterations=climb.iterations,
-            evaluations=landscape.evaluations,
-            runtime_s=perf_counter() - begin,
-            climb=climb.history,
-        )
+        return climb.result(landscape)
 
     def _iterate(self, climb: Climb, landscape: Landscape, bounds: Bounds) -> None:
         """One step of every start that still climbs."""

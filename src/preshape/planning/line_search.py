@@ -1,6 +1,6 @@
 """Backtracking line search along the projected gradient, for many starts at once."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float64
@@ -12,6 +12,8 @@ from preshape.planning.landscape import Landscape, Point
 @dataclass(frozen=True)
 class LineSearch:
     """Tries a step, projects it onto the bounds, and shrinks the step until the point is higher.
+
+    A point that is not allowed is not higher; from a start that is not allowed, no point that is less so.
 
     The paper gives "a maximum of 10 iterations" and a "control parameter of 0.5", which may be read as the
     factor that shrinks the step or as Armijo's fraction of the predicted increase. The released code halves
@@ -64,7 +66,7 @@ class LineSearch:
             theta = bounds[rows].project(origin.theta + step[rows, None] * direction[rows])
             predicted = (origin.gradient * (theta - origin.theta)).sum(axis=1)
             enough = origin.height + self.sufficient_increase * np.maximum(predicted, 0)
-            higher, points = landscape.points_above(theta, enough)
+            higher, points = landscape.points_above(theta, replace(origin, height=enough))
             found[rows[higher]] = points
             accepted[rows[higher]] = True
             if trial == 0 and self.growth is not None:

@@ -1,14 +1,14 @@
 """The max-eval baseline: the most promising of the initial grasps."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float64
 
+from preshape.planning.best_so_far import BestSoFar
 from preshape.planning.bounds import Bounds
-from preshape.planning.heuristic import HeuristicPlanner
 from preshape.planning.objective import Objective
-from preshape.planning.result import PlanResult, rank_by
+from preshape.planning.result import PlanResult
 
 
 @dataclass(frozen=True)
@@ -16,5 +16,5 @@ class MaxEvalPlanner:
     """Ranks the initial grasps by the objective and changes none (paper, section 4.3: "max-eval")."""
 
     def plan(self, objective: Objective, initial: Float64[np.ndarray, "s d"], bounds: Bounds) -> PlanResult:
-        unranked = HeuristicPlanner().plan(objective, initial, bounds)
-        return replace(unranked, ranking=rank_by(unranked.log_posterior), evaluations=len(initial))
+        """See `Planner`."""
+        return BestSoFar(objective, initial, bounds).result()

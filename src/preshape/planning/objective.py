@@ -19,10 +19,20 @@ class Evaluation:
     Args:
         logit: log odds of success given by the network.
         log_prior: log density of the prior over theta, up to a constant; zeros for a uniform prior.
+        violation: how far (m) a grasp is from what is allowed; zeros where it is allowed.
+        log_barrier: keeps climbers away from what is not allowed: at most 0, and 0 at some distance.
     """
 
     logit: Float64[Tensor, "s"]
     log_prior: Float64[Tensor, "s"]
+    violation: Float64[Tensor, "s"]
+    log_barrier: Float64[Tensor, "s"]
+
+    @classmethod
+    def of(cls, logit: Float64[Tensor, "s"], log_prior: Float64[Tensor, "s"] | None = None) -> "Evaluation":
+        """Everything is allowed, and the prior uniform unless given."""
+        free = torch.zeros_like(logit)
+        return cls(logit, free if log_prior is None else log_prior, free, free)
 
     @property
     def success_prob(self) -> Float64[Tensor, "s"]:
@@ -72,7 +82,7 @@ class SuccessObjective(Objective):
     def evaluate(self, theta: Float[Tensor, "s d"]) -> Evaluation:
         logit = self._model.head(self._features, theta.to(self._device, self._dtype))
         logit = logit.to(theta.device, torch.float64)
-        return Evaluation(logit, torch.zeros_like(logit))
+        return Evaluation.of(logit)
 
 
 class UnknownSuccess(Objective):
@@ -80,4 +90,4 @@ class UnknownSuccess(Objective):
 
     def evaluate(self, theta: Float[Tensor, "s d"]) -> Evaluation:
         unknown = torch.full(theta.shape[:1], torch.nan, dtype=torch.float64)
-        return Evaluation(unknown, torch.zeros_like(unknown))
+        return Evaluation.of(unknown)

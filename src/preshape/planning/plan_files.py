@@ -16,7 +16,13 @@ from preshape.planning.result import PlanResult, PlanStatus
 FORMAT = "preshape-plan/1"
 """Name and version of the format; raised whenever old files could be misread."""
 THETAS = ("theta", "initial_theta")
-SCALARS = ("success_prob", "initial_success_prob", "log_posterior", "initial_log_posterior")
+SCALARS = (
+    "success_prob",
+    "initial_success_prob",
+    "log_posterior",
+    "initial_log_posterior",
+    "violation_m",
+)
 
 
 def write_plan(path: str | Path, plan: GraspPlan) -> None:

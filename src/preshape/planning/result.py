@@ -20,6 +20,12 @@ class PlanStatus(StrEnum):
     """The line search found no higher point although the gradient is not zero."""
     NOT_OPTIMIZED = "not_optimized"
     """The planner does not climb: the grasp was given or picked, not improved."""
+    INFEASIBLE = "infeasible"
+    """No allowed grasp was found in the box; this one breaks the constraint the least."""
+
+
+FORBIDDEN = 1e12
+"""Far below any log posterior, with digits left for violations."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +41,10 @@ class PlanResult:
         iterations: accepted steps of each start.
         evaluations: grasps shown to the network to find the plan (a gradient comes with its evaluation).
         runtime_s: wall-clock seconds of planning, image features not included.
-        climb: for each start the success probability before planning and after every iteration.
+        climb: for each start the success probability of its best grasp, before planning and after every
+            iteration.
+        violation_m: how far the planned grasps are from what is allowed; 0 where they are allowed, or where
+            there is no constraint.
     """
 
     theta: Float64[np.ndarray, "s d"]
@@ -50,6 +59,7 @@ class PlanResult:
     evaluations: int
     runtime_s: float
     climb: tuple[tuple[float, ...], ...]
+    violation_m: Float64[np.ndarray, "s"]
 
     @property
     def best(self) -> int:
@@ -57,6 +67,19 @@ class PlanResult:
         return int(self.ranking[0])
 
 
-def rank_by(log_posterior: Float64[np.ndarray, "s"]) -> Int[np.ndarray, "s"]:
-    """Starts from the highest log posterior to the lowest; NaN last, equal ones in the given order."""
-    return np.argsort(-np.nan_to_num(log_posterior, nan=-np.inf), kind="stable")
+def merit(
+    log_posterior: Float64[np.ndarray, "*s"], violation_m: Float64[np.ndarray, "*s"]
+) -> Float64[np.ndarray, "*s"]:
+    """What decides between two grasps: the log posterior of an allowed one.
+
+    A grasp that is not allowed is worse than any that is, and the worse the farther it is from it.
+    """
+    chosen: Float64[np.ndarray, "*s"] = np.where(
+        violation_m > 0, -FORBIDDEN * (1 + violation_m), log_posterior
+    )
+    return chosen
+
+
+def rank_by(merits: Float64[np.ndarray, "s"]) -> Int[np.ndarray, "s"]:
+    """Starts from the highest merit to the lowest; NaN last, equal ones in the given order."""
+    return np.argsort(-np.nan_to_num(merits, nan=-np.inf), kind="stable")

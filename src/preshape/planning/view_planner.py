@@ -15,6 +15,7 @@ from preshape.perception.observation import Observation
 from preshape.perception.segmentation import SegmentationSettings, SegmentedObject, segment
 from preshape.perception.view_batch import ViewBatch
 from preshape.planning.bounds import Bounds, BoxSize
+from preshape.planning.constraint import ConstrainedObjective, HandClearance
 from preshape.planning.grasp_plan import GraspPlan
 from preshape.planning.objective import Objective, SuccessObjective, UnknownSuccess
 from preshape.planning.planner import Planner
@@ -31,6 +32,7 @@ class ViewPlanner:
         space: what theta means.
         heuristic, segmentation: how initial grasps are made.
         model: a trained network that predicts success; None if nothing is known about it.
+        constraint: where the hand may not be; None for anywhere.
     """
 
     name: str
@@ -39,6 +41,7 @@ class ViewPlanner:
     space: GraspSpace
     heuristic: HeuristicSettings
     model: GraspNetwork | None = None
+    constraint: HandClearance | None = None
     segmentation: SegmentationSettings = field(default_factory=SegmentationSettings)
 
     def plan(self, observation: Observation, rng: np.random.Generator) -> GraspPlan:
@@ -59,7 +62,10 @@ class ViewPlanner:
         # As in the paper (section 4.3), and because the network has seen no other preshapes.
         space = self.space.narrowed(self.heuristic.joint_ranges)
         bounds = Bounds.around(theta, space, self.box)
-        result = self.method.plan(self._objective(observation, segmented), theta, bounds)
+        objective = self._objective(observation, segmented)
+        if self.constraint is not None:
+            objective = ConstrainedObjective(objective, self.constraint.in_view(segmented))
+        result = self.method.plan(objective, theta, bounds)
         faces = tuple(grasp.face for grasp in initial)
         return GraspPlan(self.name, self.space, faces, result, observation.camera.T_world_camera)
 

@@ -28,6 +28,7 @@ def plan_with(*climbs: list[float]) -> GraspPlan:
         evaluations=0,
         runtime_s=0.0,
         climb=tuple(tuple(climb) for climb in climbs),
+        violation_m=np.zeros(starts),
     )
     return GraspPlan("test", allegro_space(), tuple(Face)[:starts], result, np.eye(4))
 

@@ -21,7 +21,7 @@ class AnalyticObjective(Objective):
         self._log_prior = log_prior or (lambda theta: torch.zeros_like(theta[:, 0]))
 
     def evaluate(self, theta: Tensor) -> Evaluation:
-        return Evaluation(self._logit(theta), self._log_prior(theta))
+        return Evaluation.of(self._logit(theta), self._log_prior(theta))
 
 
 def quadratic(centre: np.ndarray, curvature: np.ndarray) -> AnalyticObjective:
