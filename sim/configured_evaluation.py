@@ -7,9 +7,11 @@ from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
 
 from preshape.files import file_hash
+from preshape.source_digest import source_digest
 from sim.evaluation import SUMMARY_FILE, evaluate
 from sim.evaluation_summary import PlannerSummary, summarise, write_summary
 from sim.fingerprint import code_of, fingerprint
+from sim.planner_contest import try_planners
 
 ENDLESS = ("scenes", "poses_per_object", "workers")
 """Settings that change how many scenes there are, or who works on them, but no scene."""
@@ -30,8 +32,9 @@ def run_evaluation(cfg: DictConfig, output: Path) -> list[PlannerSummary]:
     settings = instantiate(cfg.evaluate).with_objects(len(maker.names))
     evaluator = OmegaConf.to_container(cfg.evaluator, resolve=True)  # worker processes may lack our resolvers
     decisive = {key: cfg.evaluate[key] for key in cfg.evaluate if key not in ENDLESS}
-    hashes = (file_hash(cfg.weights), maker.objects.fingerprint, code_of(evaluator))
-    name = fingerprint(evaluator, OmegaConf.create(decisive), *hashes, cache=cfg.paths.cache)
+    hashes = (file_hash(cfg.weights), maker.objects.fingerprint)
+    code = (source_digest(try_planners.__module__), *code_of(evaluator))
+    name = fingerprint(evaluator, OmegaConf.create(decisive), *hashes, code, cache=cfg.paths.cache)
     trials = evaluate(
         partial(instantiate, evaluator),
         origin,

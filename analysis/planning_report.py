@@ -1,0 +1,147 @@
+"""The simulation experiment: result file, charts, and a section of the results page."""
+
+import logging
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from analysis.chart_files import save_chart
+from analysis.evaluation_folder import SUMMARY_FILE, Evaluation, read_evaluation
+from analysis.planning_charts import object_figure
+from analysis.planning_runs import paired_tests, planner_run
+from analysis.planning_tables import object_lines, reliability_lines, round_lines, run_lines, test_lines
+from analysis.results_page import put_section
+from preshape.errors import InputError
+from preshape.files import read_json, write_json
+from preshape.grasps.space import GraspSpace
+from preshape.provenance import provenance
+
+log = logging.getLogger(__name__)
+
+SECTION = "planning"
+FIGURES = {"rate": "Success per object", "predicted": "Predicted probability per object"}
+
+
+@dataclass(frozen=True, eq=False)
+class PlanningReport:
+    """The report of the planners' comparison.
+
+    Args:
+        conditions: folder of the evaluation of each condition; those that are not finished are left out.
+        subject: the planner that is tested against each of the others.
+        improvement: result file of `sim/improve.py`; None, or one that is not there, leaves the rounds out.
+        output: the result file.
+        page: the results page; pictures lie in the folder pictures beside it.
+        space: what theta means.
+    """
+
+    conditions: Mapping[str, str]
+    subject: str
+    improvement: str | None
+    output: str
+    page: str
+    space: GraspSpace
+
+    def write(self) -> str:
+        """Write the result file, the charts and the section, and say what came out.
+
+        Raises:
+            InputError: if no condition is evaluated, an input cannot be used, or nothing can be written.
+        """
+        evaluations = self._evaluations()
+        content: dict[str, Any] = {
+            **provenance(int(next(iter(evaluations.values())).summary["seed"])),
+            "conditions": {
+                name: {key: found.summary[key] for key in ("command", "git_revision", "date")}
+                for name, found in evaluations.items()
+            },
+            "runs": [
+                planner_run(found, name, planner)
+                for name, found in evaluations.items()
+                for planner in found.planners
+            ],
+            "tests": self._tests(evaluations, all_scenes=False),
+            "tests_of_all_scenes": self._tests(evaluations, all_scenes=True),
+            "rounds": self._rounds(),
+        }
+        write_json(self.output, content)
+        written = read_json(self.output)
+        page = Path(self.page)
+        for shown in FIGURES:
+            save_chart(
+                object_figure(written["runs"], shown), page.parent / "pictures" / f"planning_{shown}.png"
+            )
+        put_section(page, SECTION, "\n".join(self._lines(written)))
+        lifted = "; ".join(f"{name}: {found.lifted}" for name, found in evaluations.items())
+        return f"Lifted: {lifted}. Result file: {self.output}, page: {self.page}"
+
+    def _evaluations(self) -> dict[str, Evaluation]:
+        found = {}
+        for name, folder in self.conditions.items():
+            if (Path(folder) / SUMMARY_FILE).is_file():
+                found[name] = read_evaluation(folder, self.space)
+            else:
+                log.warning("Condition %s is left out: %s holds no finished evaluation", name, folder)
+        if not found:
+            raise InputError(
+                "No condition is evaluated yet",
+                where=", ".join(self.conditions.values()),
+                fix="run `python sim/evaluate.py experiment=planning` first",
+            )
+        return found
+
+    def _tests(self, evaluations: Mapping[str, Evaluation], *, all_scenes: bool) -> list[dict[str, Any]]:
+        return [
+            test
+            for name, found in evaluations.items()
+            if self.subject in found.planners
+            for test in paired_tests(found, name, self.subject, all_scenes=all_scenes)
+        ]
+
+    def _rounds(self) -> list[dict[str, Any]]:
+        if self.improvement is None or not Path(self.improvement).is_file():
+            return []
+        rounds: list[dict[str, Any]] = read_json(self.improvement)["rounds"]
+        return rounds
+
+    def _lines(self, content: Mapping[str, Any]) -> list[str]:
+        runs = content["runs"]
+        lines = [
+            "## Planning",
+            "",
+            f"Made by `{content['command']}` at revision `{content['git_revision']}`.",
+            READING,
+            "",
+            *run_lines(runs),
+            "",
+            f"Exact McNemar tests of `{self.subject}` against each of the others, differences in percentage "
+            "points:",
+            "",
+            *test_lines(content["tests"], content["tests_of_all_scenes"]),
+            "",
+            RELIABILITY,
+            "",
+            *reliability_lines(runs),
+        ]
+        for shown, title in FIGURES.items():
+            lines += ["", f"### {title}", "", f"![{title}](pictures/planning_{shown}.png)"]
+        for condition in dict.fromkeys(run["condition"] for run in runs):
+            own = [run for run in runs if run["condition"] == condition]
+            lines += ["", f"Lifted of executed, {condition} (paper):", "", *object_lines(own)]
+        if content["rounds"]:
+            lines += ["", "### Learning from its own optima", "", ROUNDS, "", *round_lines(content["rounds"])]
+        return lines
+
+
+READING = """Every planner planned on the same scenes from the same initial grasps. Of `heuristic` every
+initial grasp is executed, of the others the best that the arm can reach: lifted of executed is the
+paper's rate. Lifted of all scenes counts a scene without a grasp within reach as a failure; of
+`heuristic` one executed grasp a scene counts, drawn by the trial's seed. Intervals are 95 % Wilson;
+seconds are those of planning beside other work, without image features."""
+RELIABILITY = """How far the probability that planners report at the grasp that was executed is from what
+came of it, with its 95 % bootstrap interval; then after corrections that were each fitted to one half of
+the scenes and applied to the other:"""
+ROUNDS = """`python sim/improve.py`: in each round the planner's own optima on objects that are not tested
+are executed and added to the trials, the network is trained again, and the planners compete again on the
+same test scenes."""
