@@ -64,7 +64,9 @@ def take_picture(scene: sapien.Scene, lens: RenderCameraComponent) -> None:
 
 def colour(lens: RenderCameraComponent) -> UInt8[np.ndarray, "h w 3"]:
     """sRGB colour of the last picture."""
-    return np.rint(np.clip(lens.get_picture("Color")[..., :3], 0, 1) * 255).astype(np.uint8)
+    levels = np.clip(lens.get_picture("Color")[..., :3], 0, 1)
+    levels *= 255
+    return np.rint(levels, out=levels).astype(np.uint8)
 
 
 def depth(lens: RenderCameraComponent) -> Float32[np.ndarray, "h w"]:

@@ -53,11 +53,16 @@ class KinectNoise:
         lost = self._shadow(depth, camera) | self._missed(incidence, rng)
         source = self._ragged(depth.shape, rng)
         true = depth.take(source).astype(np.float64)
-        disparity = self.disparity_m / true + self.disparity_sigma * self._correlated(depth.shape, rng)
-        measured = self.disparity_m / np.maximum(np.rint(disparity), 1)
+        measured = self._correlated(depth.shape, rng)
+        measured *= self.disparity_sigma
+        measured += self.disparity_m / true
+        np.maximum(np.rint(measured, out=measured), 1, out=measured)
+        np.divide(self.disparity_m, measured, out=measured)
         self._add_grazing_noise(measured, incidence.take(source), true, rng)
-        in_range = (measured >= self.nearest_m) & (measured <= self.farthest_m)
-        return np.where(in_range & ~(lost | lost.take(source)), measured, np.nan).astype(np.float32)
+        lost |= lost.take(source)
+        lost |= ~((measured >= self.nearest_m) & (measured <= self.farthest_m))
+        measured[lost] = np.nan
+        return measured.astype(np.float32)
 
     def _missed(
         self, incidence: Float32[np.ndarray, "h w"], rng: np.random.Generator
@@ -66,8 +71,8 @@ class KinectNoise:
         onset = np.deg2rad(self.grazing_hole_deg)
         missed = np.isnan(incidence)
         luck = rng.random(incidence.shape)
-        steep = incidence > onset
-        missed[steep] = luck[steep] < (incidence[steep] - onset) / (np.pi / 2 - onset)
+        steep = np.flatnonzero(incidence > onset)
+        missed.reshape(-1)[steep] = luck.take(steep) < (incidence.take(steep) - onset) / (np.pi / 2 - onset)
         return missed
 
     def _add_grazing_noise(
@@ -79,10 +84,10 @@ class KinectNoise:
     ) -> None:
         """Add the noise of steep incidence: Nguyen et al.'s equation for more than 60 degrees."""
         noise = rng.standard_normal(measured.shape)
-        steep = incidence > np.deg2rad(60.0)
-        angle = np.minimum(incidence[steep], np.deg2rad(self.grazing_hole_deg))
-        sigma = self.grazing_sigma_m * angle**2 / ((np.pi / 2 - angle) ** 2 * np.sqrt(depth[steep]))
-        measured[steep] += sigma * noise[steep]
+        steep = np.flatnonzero(incidence > np.deg2rad(60.0))
+        angle = np.minimum(incidence.take(steep), np.deg2rad(self.grazing_hole_deg))
+        sigma = self.grazing_sigma_m * angle**2 / ((np.pi / 2 - angle) ** 2 * np.sqrt(depth.take(steep)))
+        measured.reshape(-1)[steep] += sigma * noise.take(steep)
 
     def _shadow(self, depth: Float32[np.ndarray, "h w"], camera: Camera) -> Bool[np.ndarray, "h w"]:
         """Where the projector's light does not reach.
@@ -99,19 +104,27 @@ class KinectNoise:
 
     def _ragged(self, shape: tuple[int, int], rng: np.random.Generator) -> Int[np.ndarray, "h w"]:
         """Number of the pixel, in a flat image, that each pixel really measures."""
-        shift = np.rint(self.lateral_sigma_px * rng.standard_normal((2, *shape))).astype(np.intp)
-        row = np.clip(np.arange(shape[0])[:, None] + shift[0], 0, shape[0] - 1)
-        column = np.clip(np.arange(shape[1]) + shift[1], 0, shape[1] - 1)
-        return row * shape[1] + column
+        row, column = shift = rng.standard_normal((2, *shape))
+        shift *= self.lateral_sigma_px
+        np.rint(shift, out=shift)
+        row += np.arange(shape[0])[:, None]
+        column += np.arange(shape[1])
+        np.clip(row, 0, shape[0] - 1, out=row)
+        np.clip(column, 0, shape[1] - 1, out=column)
+        row *= shape[1]
+        row += column
+        return row.astype(np.intp)
 
     def _correlated(self, shape: tuple[int, int], rng: np.random.Generator) -> Float[np.ndarray, "h w"]:
         """Standard normal noise that neighbours share."""
         white = rng.standard_normal(shape)
         if self.correlation_px == 0:
             return white
-        smooth = gaussian_filter(white, self.correlation_px)
+        smooth: Float[np.ndarray, "h w"] = gaussian_filter(white, self.correlation_px, output=white)
         # An average over a Gaussian window of white noise has this standard deviation.
-        return smooth * 2 * np.sqrt(np.pi) * self.correlation_px
+        smooth *= 2 * np.sqrt(np.pi)
+        smooth *= self.correlation_px
+        return smooth
 
 
 def incidence_angles(depth: Float32[np.ndarray, "h w"], camera: Camera) -> Float32[np.ndarray, "h w"]:
