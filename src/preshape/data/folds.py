@@ -81,14 +81,15 @@ class HoldOut:
 def split_trials(trials: TrialTable, hold_out: HoldOut) -> Split:
     """Split executed trials; the test set has about the whole table's share of successes.
 
-    Validation trials share no scene with the others, except under `SplitScheme.SEEN`.
+    Validation trials have in common with those learned from what test trials have, so that training is ended,
+    and the network calibrated, for what is tested.
 
     Raises:
         InputError: if there are too few trials, successes or objects, or a named object has no trials.
     """
     labels, seed = trials.lifted, hold_out.seed
     scheme = SplitScheme(hold_out.split)
-    groups = np.arange(len(trials)) if scheme is SplitScheme.SEEN else trials.scene_ids
+    groups = _kept_together(trials, scheme)
     if scheme is SplitScheme.UNSEEN:
         folds = object_folds(trials)
         is_test = np.array([folds[name] == hold_out.fold for name in trials.object_ids], dtype=bool)
@@ -99,9 +100,18 @@ def split_trials(trials: TrialTable, hold_out: HoldOut) -> Split:
     rest, test = np.flatnonzero(~is_test), np.flatnonzero(is_test)
     if hold_out.validation_fraction <= 0:
         return Split(rest, rest[:0], test)
-    parts = max(2, round(1 / hold_out.validation_fraction))
+    parts = max(2, min(round(1 / hold_out.validation_fraction), len(np.unique(groups[rest]))))
     is_validation = _stratified(labels[rest], groups[rest], parts, 0, seed)
     return Split(rest[~is_validation], rest[is_validation], test)
+
+
+def _kept_together(trials: TrialTable, scheme: SplitScheme) -> Int[np.ndarray, "n"]:
+    """Numbers that are equal for trials which must be in the same part."""
+    if scheme is SplitScheme.SEEN:
+        return np.arange(len(trials))
+    if scheme is SplitScheme.SCENES:
+        return trials.scene_ids
+    return np.unique(trials.object_ids, return_inverse=True)[1]
 
 
 def object_folds(trials: TrialTable) -> dict[str, int]:

@@ -15,7 +15,7 @@ SURROUNDINGS = 7
 
 
 class PalmPoints(SuccessModel):
-    """Points of the object in the frame of the palm, pooled by their maximum; 22,529 parameters for d = 14.
+    """Points of the object in the frame of the palm, pooled by their maximum; 11,041 parameters for d = 14.
 
     Whether a grasp lifts depends on where the object is relative to the hand, and not on where both are in
     the image. So the points p of the object's visible surface are taken into the palm's frame,
@@ -43,7 +43,7 @@ class PalmPoints(SuccessModel):
         theta_dim: int,
         *,
         points: int = 128,
-        width: int = 64,
+        width: int = 32,
         keep_prob: float = 0.9,
     ) -> None:
         super().__init__(name, grasp_space, theta_dim)

@@ -46,6 +46,7 @@ def test_unseen_objects_are_never_learned_from(trials: TrialTable) -> None:
     for split in splits(trials, SplitScheme.UNSEEN):
         assert set(objects[split.test]).isdisjoint(objects[split.train])
         assert set(objects[split.test]).isdisjoint(objects[split.validation])
+        assert set(objects[split.train]).isdisjoint(objects[split.validation])
 
 
 def test_named_objects_are_all_that_is_tested(trials: TrialTable) -> None:
