@@ -2,15 +2,16 @@
 
 import logging
 from pathlib import Path
+from typing import Any
 
 import torch
 from hydra.core.hydra_config import HydraConfig
+from hydra.types import RunMode
 from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
 
 from preshape.entry_point import entry_point
-from preshape.provenance import git_revision
-from preshape.training import train
+from preshape.training_job import TrainingJob
 
 log = logging.getLogger(__name__)
 
@@ -19,15 +20,18 @@ log = logging.getLogger(__name__)
 def main(cfg: DictConfig) -> None:
     """Fit the network, measure it on held-out trials, and keep both."""
     torch.manual_seed(cfg.seed)
-    model = instantiate(cfg.model)
-    data = instantiate(cfg.dataset.data)
-    data.setup()  # data that cannot be used leaves no run behind
-    settings = instantiate(cfg.trainer.settings)
-    folder = Path(HydraConfig.get().runtime.output_dir)
-    config = OmegaConf.to_container(cfg, resolve=True)
-    with instantiate(cfg.tracking).run(cfg.run_name, config, {"git_revision": git_revision()}) as run:
-        result = train(model, data, settings, folder, run)
-    log.info("%s: %s; weights: %s", cfg.run_name, result.metrics.summary(), result.weights)
+    hydra = HydraConfig.get()
+    choices: dict[str, Any] = {
+        "experiment": hydra.runtime.choices.get("experiment") or "default",
+        "trials": cfg.dataset.data.trials,
+        "config": OmegaConf.to_container(cfg, resolve=True),
+        "unresolved": OmegaConf.to_container(cfg, resolve=False),
+        "in_sweep": hydra.mode is RunMode.MULTIRUN,
+        **{key: cfg[key] for key in ("split", "fold", "retrain_after_code_changes")},
+    }
+    job = TrainingJob(cfg.run_name, Path(hydra.runtime.output_dir), **choices)
+    parts = (instantiate(cfg.model), instantiate(cfg.dataset.data), instantiate(cfg.trainer.settings))
+    log.info("%s", job.run(*parts, instantiate(cfg.tracking)))
 
 
 if __name__ == "__main__":

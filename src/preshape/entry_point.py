@@ -15,11 +15,13 @@ from omegaconf import DictConfig, OmegaConf
 from preshape.composition import check_composition
 from preshape.errors import InputError, bad_input_behind
 from preshape.paths import project_root
+from preshape.sweep_folders import sweep_group
 
 EXIT_BAD_INPUT = 2
 EXIT_INTERRUPTED = 130
 
 OmegaConf.register_new_resolver("project_root", lambda: str(project_root()), replace=True)
+OmegaConf.register_new_resolver("sweep_group", sweep_group, replace=True)
 
 
 def entry_point(config_name: str) -> Callable[[Callable[[DictConfig], None]], Callable[[], None]]:

@@ -1,5 +1,6 @@
 """Writing files so that they are there whole or not at all, and reading JSON that a user may have edited."""
 
+import fcntl
 import hashlib
 import json
 import math
@@ -43,6 +44,28 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
     finally:
         with suppress(OSError):  # a folder that cannot be written to holds no temporary file of ours
             temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def exclusive(path: str | Path) -> Iterator[None]:
+    """Keep other processes that ask for the same lock file out; waits until it is free.
+
+    The file stays, empty. A process that is killed leaves the lock free.
+
+    Raises:
+        InputError: if the place cannot be written to.
+    """
+    path = Path(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle = path.open("ab")
+    except OSError as error:
+        raise InputError(
+            f"The lock file cannot be made: {error.strerror or error}", where=path, fix="choose another place"
+        ) from error
+    with handle:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
 
 
 def write_json(path: str | Path, content: Mapping[str, Any]) -> None:

@@ -96,6 +96,8 @@ def train(
     data.setup()
     if isinstance(model, RegressionCNN):
         data.keep_lifted()
+    if "patch" not in model.looks_at:
+        data.leave_out_patches()
     model.fit_statistics(data.train.patches(), data.train.theta)
     unfinished = folder / f"unfinished-{_identity(model, data, settings)}.ckpt"
     curves = _fit(model, data, settings, unfinished, run)
@@ -133,7 +135,7 @@ def _fit(
         callbacks.insert(0, KeepBest())
     trainer = lightning.Trainer(
         accelerator=settings.accelerator,
-        devices=1,
+        devices=settings.devices,
         precision=settings.precision,
         max_steps=settings.learning.iterations,
         max_epochs=-1,
@@ -178,6 +180,7 @@ def _keep(
     )
     sizes = {"n_train": len(data.train), "n_validation": len(data.validation)}
     content = {**provenance(seed), "model": model.name, **description, **sizes, **measurement.to_dict()}
+    content["scalars"] = measurement.scalars()
     write_json(folder / METRICS_FILE, content)
 
 

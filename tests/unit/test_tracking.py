@@ -6,7 +6,8 @@ import pytest
 from mlflow import MlflowClient
 
 from preshape.errors import InputError
-from preshape.tracking import MlflowTracking, NoTracking, flatten
+from preshape.mlflow_tracking import MlflowTracking, flatten
+from preshape.tracking import NoTracking, SweepKey
 
 
 def store(folder: Path) -> MlflowTracking:

@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy.optimize import minimize_scalar
+from scipy.special import logit
+from scipy.stats import hypergeom
 
 from preshape.evaluation.intervals import wilson
 
@@ -54,8 +56,7 @@ def reliability_diagram(
         success_prob: predicted probability of it.
         bins: number k of bins between 0 and 1.
     """
-    edges = np.linspace(0.0, 1.0, bins + 1)[1:-1]
-    bin_of = np.digitize(success_prob, edges)
+    bin_of = bin_numbers(success_prob, bins)
     count = np.bincount(bin_of, minlength=bins)
     lifted = np.bincount(bin_of, weights=labels, minlength=bins)
     total = np.bincount(bin_of, weights=success_prob, minlength=bins)
@@ -64,6 +65,35 @@ def reliability_diagram(
     intervals = [wilson(int(k), int(n)) for k, n in zip(lifted, count, strict=True)]
     low, high = np.array(intervals).T
     return ReliabilityDiagram(count, predicted, observed, low, high)
+
+
+def bin_numbers(success_prob: Float[np.ndarray, "n"], bins: int = CALIBRATION_BINS) -> Int[np.ndarray, "n"]:
+    """Number of the bin that each probability falls into, of so many of equal width."""
+    numbers: Int[np.ndarray, "n"] = np.digitize(success_prob, np.linspace(0.0, 1.0, bins + 1)[1:-1])
+    return numbers
+
+
+def oversampling_shift(n: int, positives: int, *, batch_size: int, min_positives: int) -> float:
+    """By how much to move logits that were learned from oversampled successes (prior correction).
+
+    Batches that are drawn again until they hold enough successes have a greater share of them than the table.
+    Of each class they are fair samples, so a network trained on them is off by the difference of the two log
+    odds.
+
+    Args:
+        n, positives: trials learned from, and those of them that lifted.
+        batch_size: trials per batch, drawn without replacement.
+        min_positives: lifted trials that a batch has at least.
+
+    Returns:
+        What to add to a logit: 0 or less; 0 if one of the classes is missing.
+    """
+    counts = np.arange(min_positives, batch_size + 1)
+    probability = hypergeom.pmf(counts, n, positives, batch_size)
+    drawn = float((counts * probability).sum() / probability.sum()) / batch_size
+    if not 0 < positives < n or drawn >= 1:
+        return 0.0
+    return float(logit(positives / n) - logit(drawn))
 
 
 def fit_temperature(labels: Bool[np.ndarray, "n"], logits: Float[np.ndarray, "n"]) -> float:

@@ -41,9 +41,9 @@ class GraspErrors:
         )
 
     def scalars(self) -> dict[str, float]:
-        """The number of grasps and the mean errors by their names, each a number."""
+        """The number of grasps, mean errors and the smallest of the palm by their names, each a number."""
         means = {name: getattr(self, name).mean for name in ("palm_m", "orientation_rad", "joints_rad")}
-        return {"n": float(self.n), **means}
+        return {"n": float(self.n), **means, "palm_smallest_m": self.palm_m.smallest}
 
     def to_dict(self) -> dict[str, Any]:
         """The errors as they stand in result files."""

@@ -1,7 +1,7 @@
 """Confidence intervals: Wilson for rates, bootstrap for areas under the ROC curve."""
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float, Float32, Int
 from scipy.stats import binomtest
 
 CONFIDENCE = 0.95
@@ -13,6 +13,23 @@ def wilson(successes: int, n: int, confidence: float = CONFIDENCE) -> tuple[floa
         return 0.0, 1.0
     interval = binomtest(successes, n).proportion_ci(confidence, method="wilson")
     return float(interval.low), float(interval.high)
+
+
+def resampled(
+    n: int, rng: np.random.Generator, *, groups: Int[np.ndarray, "n"] | None, replicates: int
+) -> Float32[np.ndarray, "r n"]:
+    """How often each of n trials occurs in each of r data sets that are drawn from them with replacement.
+
+    Args:
+        n: number of trials.
+        rng: source of the draws.
+        groups: scene of each trial; whole scenes are drawn. Without groups, single trials are.
+        replicates: number r of data sets.
+    """
+    members = np.unique(np.arange(n) if groups is None else groups, return_inverse=True)[1]
+    n_groups = int(members.max()) + 1
+    drawn = rng.multinomial(n_groups, np.full(n_groups, 1 / n_groups), size=replicates)
+    return drawn[:, members].astype(np.float32)
 
 
 def bootstrap_auc(
@@ -39,11 +56,8 @@ def bootstrap_auc(
     """
     if labels.all() or not labels.any():
         return float("nan"), float("nan")
-    members = np.unique(np.arange(len(labels)) if groups is None else groups, return_inverse=True)[1]
-    n_groups = int(members.max()) + 1
-    drawn = rng.multinomial(n_groups, np.full(n_groups, 1 / n_groups), size=replicates)
     # AUC is the share of (positive, negative) pairs in the right order; resampling only weights the pairs.
-    weights = drawn[:, members].astype(np.float32)
+    weights = resampled(len(labels), rng, groups=groups, replicates=replicates)
     positive, negative = weights[:, labels], weights[:, ~labels]
     above = np.sign(scores[labels][:, None] - scores[~labels][None, :]).astype(np.float32) / 2 + 0.5
     ordered = ((positive @ above) * negative).sum(axis=1, dtype=np.float64)

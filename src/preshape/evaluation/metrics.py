@@ -1,6 +1,7 @@
 """How well predicted success probabilities tell grasps that lift from grasps that fail."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -11,6 +12,10 @@ from sklearn.metrics import average_precision_score, brier_score_loss, roc_auc_s
 from preshape.evaluation.calibration import reliability_diagram
 from preshape.evaluation.decisions import PAPER_THRESHOLD, decision_metrics
 from preshape.evaluation.intervals import bootstrap_auc
+from preshape.evaluation.metric_intervals import metric_intervals
+
+SHORT_NAMES = {"average_precision": "ap"}
+"""Names of figures in result files, where they differ."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +30,7 @@ class ClassificationMetrics:
         brier: mean squared error of the probability.
         ece: expected calibration error over ten bins of equal width.
         threshold: success probability above which success is predicted.
+        intervals: 95 % bootstrap intervals (low, high) of the other figures, by their names.
     """
 
     n: int
@@ -38,6 +44,7 @@ class ClassificationMetrics:
     brier: float
     ece: float
     threshold: float
+    intervals: Mapping[str, tuple[float, float]]
 
     def summary(self) -> str:
         """The most telling figures in words."""
@@ -47,8 +54,11 @@ class ClassificationMetrics:
         )
 
     def scalars(self) -> dict[str, float]:
-        """The figures by their names, each a number."""
-        return {name: float(value) for name, value in asdict(self).items()}
+        """The figures and the ends of their intervals by their names, each a number."""
+        figures = {name: float(value) for name, value in asdict(self).items() if name != "intervals"}
+        for name, (low, high) in self.intervals.items():
+            figures |= {f"{name}_low": low, f"{name}_high": high}
+        return figures
 
     def to_dict(self) -> dict[str, Any]:
         """The figures as they stand in result files, the AUC with its interval as `{value, low, high}`."""
@@ -62,6 +72,7 @@ class ClassificationMetrics:
             "brier": self.brier,
             "ece": self.ece,
             "threshold": self.threshold,
+            "intervals": {SHORT_NAMES.get(name, name): list(ends) for name, ends in self.intervals.items()},
         }
 
 
@@ -99,4 +110,5 @@ def classification_metrics(
         brier=float(brier_score_loss(labels, success_prob, pos_label=True)),
         ece=reliability_diagram(labels, success_prob).expected_error,
         threshold=threshold,
+        intervals=metric_intervals(labels, success_prob, threshold, rng, groups=groups),
     )

@@ -55,20 +55,33 @@ class ShowProgress(Callback):
 
 
 class TrackCurves(Callback):
-    """Sends the curves of every epoch to the tracked run.
+    """Sends the curves of every epoch to the tracked run, and remembers them.
 
     Args:
         run: where they are kept.
+
+    Attributes:
+        points: the values after each epoch by their names, with the number of `iteration`s.
     """
 
     def __init__(self, run: TrackedRun) -> None:
         self._run = run
+        self.points: list[dict[str, float]] = []
 
     def on_train_epoch_end(self, trainer: lightning.Trainer, pl_module: lightning.LightningModule) -> None:
         """One point on each curve."""
         values = {name: float(value) for name, value in trainer.callback_metrics.items()}
         values["learning_rate"] = trainer.optimizers[0].param_groups[0]["lr"]
         self._run.log(values, trainer.global_step)
+        self.points.append({"iteration": float(trainer.global_step), **values})
+
+    def state_dict(self) -> dict[str, Any]:
+        """What a training that goes on needs to know."""
+        return {"points": self.points}
+
+    def load_state_dict(self, state_dict: dict[str, Any]) -> None:
+        """Go on from there."""
+        self.points = state_dict["points"]
 
 
 class KeepBest(Callback):

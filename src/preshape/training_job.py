@@ -1,0 +1,155 @@
+"""One training as a user asked for it, alone or as a fold of a sweep that may be started again."""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from preshape.data.data_module import GraspDataModule
+from preshape.errors import InputError
+from preshape.evaluation.fold_summary import summarise
+from preshape.files import read_json
+from preshape.models.success_model import GraspNetwork
+from preshape.provenance import git_revision
+from preshape.source_digest import source_digest
+from preshape.tracking import SweepMember, TrackedRun, Tracking
+from preshape.training import METRICS_FILE, WEIGHTS_FILE, TrainerSettings, keep_files, train
+
+DECISIVE = ("preshape.data.data_module", "preshape.measuring", "preshape.models.lightning_module")
+"""Modules whose code decides weights and figures, besides that of the network."""
+WITHOUT_INFLUENCE = (
+    *("paths", "tracking", "run_name", "split", "fold", "retrain_after_code_changes"),
+    *("dataset.data.folder", "dataset.data.views.folder", "dataset.data.views.maker"),
+    "dataset.data.views.max_gigabytes",
+)
+"""Settings that say where things lie, how fast they are made, or which fold is meant."""
+
+
+@dataclass(frozen=True)
+class TrainingJob:
+    """What a user asked for.
+
+    Args:
+        name: name of the run.
+        folder: where its files go; in a sweep, the folder of its group is the one above.
+        experiment: the chosen experiment, or `default`.
+        split, fold: which trials are held out.
+        trials: as if the table had so many; None for all.
+        config: the configuration, resolved.
+        unresolved: the same with its references, which do not depend on where the project lies.
+        in_sweep: whether it is one of several.
+        retrain_after_code_changes: whether a fold is trained again if the code has changed since.
+    """
+
+    name: str
+    folder: Path
+    experiment: str
+    split: str
+    fold: int
+    trials: int | None
+    config: Mapping[str, Any]
+    unresolved: Mapping[str, Any]
+    in_sweep: bool
+    retrain_after_code_changes: bool
+
+    def run(
+        self, model: GraspNetwork, data: GraspDataModule, settings: TrainerSettings, tracking: Tracking
+    ) -> str:
+        """Train and measure, keep both, and say what came out.
+
+        A fold of a sweep that was trained before with the same settings, data and code is not trained again.
+
+        Raises:
+            InputError: if the data cannot be used, files cannot be written, or several GPUs are wanted for a
+                fold of a sweep.
+        """
+        if not self.in_sweep:
+            data.setup()
+            with tracking.run(self.name, self.config, {"git_revision": git_revision()}) as run:
+                result = train(model, data, settings, self.folder, run, self._description(model, data))
+            return f"{self.name}: {result.metrics.summary()}; weights: {result.weights}"
+        _refuse_several_devices(settings)
+        data.setup()
+        description = self._description(model, data)
+        group, identity = self.folder.parent, description["identity"]
+        member = SweepMember(
+            name=group.name,
+            digest=_digest((str(group), identity["settings"], identity["data"])),
+            member_digest=_digest(identity),
+            trained=self._is_trained(identity),
+        )
+        tags = {"git_revision": git_revision(), "group": group.name}
+        with tracking.run(self.folder.name, self.config, tags, member) as run:
+            if member.trained:
+                outcome = self._had_been_trained(run, settings)
+            else:
+                outcome = train(model, data, settings, self.folder, run, description).metrics.summary()
+            summary = summarise(group, self._decisive(identity))
+            if run.parent is not None:
+                run.parent.log(summary.scalars(), summary.folds)
+                for file in summary.files:
+                    run.parent.keep(file)
+        name = f"{group.name}/{self.folder.name}"
+        return f"{name}: {outcome}; weights: {self.folder / WEIGHTS_FILE}; {summary.in_words()}"
+
+    def _had_been_trained(self, run: TrackedRun, settings: TrainerSettings) -> str:
+        """Make up for what is missing of the run's record, if the files came to their end and it did not."""
+        if not run.was_finished:
+            scalars = read_json(self.folder / METRICS_FILE)["scalars"].items()
+            known = {f"test_{name}": value for name, value in scalars if value is not None}
+            run.log(known, settings.learning.iterations)
+            keep_files(self.folder, run)
+        return "had been trained before"
+
+    def _description(self, model: GraspNetwork, data: GraspDataModule) -> dict[str, Any]:
+        """What the file of the metrics says about the job."""
+        code = [source_digest(module) for module in (*DECISIVE, type(model).__module__)]
+        return {
+            "name": self.name,
+            "experiment": self.experiment,
+            "split": self.split,
+            "fold": self.fold,
+            "trials": self.trials,
+            "identity": {
+                "settings": _digest(_without(self.unresolved, WITHOUT_INFLUENCE)),
+                "data": data.data_hash,
+                "code": _digest(code),
+            },
+        }
+
+    def _decisive(self, identity: Mapping[str, str]) -> dict[str, str]:
+        """The digests in which folds of the sweep have to agree."""
+        left_out = () if self.retrain_after_code_changes else ("code",)
+        return {name: digest for name, digest in identity.items() if name not in left_out}
+
+    def _is_trained(self, identity: Mapping[str, str]) -> bool:
+        """Whether the folder holds the result of just this job."""
+        if not (self.folder / METRICS_FILE).is_file() or not (self.folder / WEIGHTS_FILE).is_file():
+            return False
+        found = read_json(self.folder / METRICS_FILE)
+        wanted = {"split": self.split, "fold": self.fold}
+        same_fold = wanted.items() <= {key: found.get(key) for key in wanted}.items()
+        return same_fold and self._decisive(identity).items() <= found.get("identity", {}).items()
+
+
+def _refuse_several_devices(settings: TrainerSettings) -> None:
+    if settings.devices > 1:
+        raise InputError(
+            f"A fold of a sweep trains on one device, but {settings.devices} are wanted",
+            where="trainer.settings.devices",
+            fix="leave it at 1 and let the launcher run several folds at once "
+            "(hydra/launcher=joblib or submitit_slurm), or train one network without --multirun",
+        )
+
+
+def _without(config: Mapping[str, Any], keys: tuple[str, ...], prefix: str = "") -> dict[str, Any]:
+    return {
+        key: _without(value, keys, f"{prefix}{key}.") if isinstance(value, Mapping) else value
+        for key, value in config.items()
+        if f"{prefix}{key}" not in keys
+    }
+
+
+def _digest(content: Any) -> str:
+    return hashlib.sha256(repr(content).encode()).hexdigest()[:16]
