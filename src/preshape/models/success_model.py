@@ -123,8 +123,8 @@ def xavier_weights(layer: nn.Module) -> None:
     """Xavier weights and zero biases, for `nn.Module.apply`."""
     if isinstance(layer, nn.Conv2d | nn.Linear):
         nn.init.xavier_uniform_(layer.weight)
-        assert layer.bias is not None
-        nn.init.zeros_(layer.bias)
+        if layer.bias is not None:
+            nn.init.zeros_(layer.bias)
 
 
 def channel_statistics(patches: Iterable[Tensor]) -> tuple[Float[Tensor, "c"], Float[Tensor, "c"]]:
