@@ -2,7 +2,6 @@
 
 import logging
 from pathlib import Path
-from typing import Any
 
 import torch
 from hydra.core.hydra_config import HydraConfig
@@ -21,15 +20,18 @@ def main(cfg: DictConfig) -> None:
     """Fit the network, measure it on held-out trials, and keep both."""
     torch.manual_seed(cfg.seed)
     hydra = HydraConfig.get()
-    choices: dict[str, Any] = {
-        "experiment": hydra.runtime.choices.get("experiment") or "default",
-        "trials": cfg.dataset.data.trials,
+    settings = {
+        "about": {
+            "experiment": hydra.runtime.choices.get("experiment") or "default",
+            **{key: cfg[key] for key in ("split", "fold")},
+            **{key: cfg.dataset.data[key] for key in ("trials", "trials_learned")},
+        },
         "config": OmegaConf.to_container(cfg, resolve=True),
         "unresolved": OmegaConf.to_container(cfg, resolve=False),
         "in_sweep": hydra.mode is RunMode.MULTIRUN,
-        **{key: cfg[key] for key in ("split", "fold", "retrain_after_code_changes")},
+        "retrain_after_code_changes": cfg.retrain_after_code_changes,
     }
-    job = TrainingJob(cfg.run_name, Path(hydra.runtime.output_dir), **choices)
+    job = TrainingJob(cfg.run_name, Path(hydra.runtime.output_dir), **settings)
     parts = (instantiate(cfg.model), instantiate(cfg.dataset.data), instantiate(cfg.trainer.settings))
     log.info("%s", job.run(*parts, instantiate(cfg.tracking)))
 

@@ -33,9 +33,7 @@ class TrainingJob:
     Args:
         name: name of the run.
         folder: where its files go; in a sweep, the folder of its group is the one above.
-        experiment: the chosen experiment, or `default`.
-        split, fold: which trials are held out.
-        trials: as if the table had so many; None for all.
+        about: what the file of the metrics shall say about it; `split` and `fold` at least.
         config: the configuration, resolved.
         unresolved: the same with its references, which do not depend on where the project lies.
         in_sweep: whether it is one of several.
@@ -44,10 +42,7 @@ class TrainingJob:
 
     name: str
     folder: Path
-    experiment: str
-    split: str
-    fold: int
-    trials: int | None
+    about: Mapping[str, Any]
     config: Mapping[str, Any]
     unresolved: Mapping[str, Any]
     in_sweep: bool
@@ -107,10 +102,7 @@ class TrainingJob:
         code = [source_digest(module) for module in (*DECISIVE, type(model).__module__)]
         return {
             "name": self.name,
-            "experiment": self.experiment,
-            "split": self.split,
-            "fold": self.fold,
-            "trials": self.trials,
+            **self.about,
             "identity": {
                 "settings": _digest(_without(self.unresolved, WITHOUT_INFLUENCE)),
                 "data": data.data_hash,
@@ -128,8 +120,7 @@ class TrainingJob:
         if not (self.folder / METRICS_FILE).is_file() or not (self.folder / WEIGHTS_FILE).is_file():
             return False
         found = read_json(self.folder / METRICS_FILE)
-        wanted = {"split": self.split, "fold": self.fold}
-        same_fold = wanted.items() <= {key: found.get(key) for key in wanted}.items()
+        same_fold = all(found.get(key) == self.about[key] for key in ("split", "fold"))
         return same_fold and self._decisive(identity).items() <= found.get("identity", {}).items()
 
 

@@ -46,6 +46,8 @@ class GraspDataModule(lightning.LightningDataModule):
         hold_out: which trials are held out.
         batches: how the others are drawn.
         trials: how many executed trials are used, from the first of the table on; None for all.
+        trials_learned: learn as if so many were used: of the trials for training and for validation random
+            ones are left out, the test trials stay; None for none. A smaller number keeps some of a larger's.
     """
 
     train: GraspDataset
@@ -63,11 +65,13 @@ class GraspDataModule(lightning.LightningDataModule):
         hold_out: HoldOut,
         batches: BatchSettings,
         trials: int | None = None,
+        trials_learned: int | None = None,
     ) -> None:
         super().__init__()
         self._folder, self._origin, self._space = Path(folder), origin, space
         self._views = views
         self._hold_out, self.batches, self._wanted = hold_out, batches, trials
+        self._learned = trials_learned
 
     def setup(self, stage: str | None = None) -> None:
         """Read the tables, render what is not rendered yet, and split; does nothing the second time.
@@ -93,20 +97,32 @@ class GraspDataModule(lightning.LightningDataModule):
             mask = np.isin(np.arange(len(executed)), rows)
             return GraspDataset(executed.where(mask), scenes.by_id, self._views)
 
-        self.train, self.validation, self.test = part(split.train), part(split.validation), part(split.test)
+        learned = (self._thinned(rows, len(executed)) for rows in (split.train, split.validation))
+        self.train, self.validation, self.test = (part(rows) for rows in (*learned, split.test))
         self.data_hash = data_hash(self._folder)
+
+    def _thinned(self, rows: Int[np.ndarray, "rows"], executed: int) -> Int[np.ndarray, "kept"]:
+        """The rows that are kept if fewer trials than were executed are to be learned from."""
+        if self._learned is None:
+            return rows
+        self._check_number(self._learned, executed, "trials_learned")
+        order = np.random.default_rng(self._hold_out.seed).permutation(rows)
+        return np.sort(order[: round(len(rows) * self._learned / executed)])
 
     def _first(self, executed: TrialTable) -> TrialTable:
         """The trials that are used of all executed ones."""
         if self._wanted is None:
             return executed
-        if not 0 < self._wanted <= len(executed):
-            raise InputError(
-                f"{self._wanted} trials are wanted, but the table has {len(executed)} executed ones",
-                where=self._folder,
-                fix="set dataset.data.trials to at most as many, or to null for all",
-            )
+        self._check_number(self._wanted, len(executed), "trials")
         return executed.where(np.arange(len(executed)) < self._wanted)
+
+    def _check_number(self, wanted: int, executed: int, setting: str) -> None:
+        if not 0 < wanted <= executed:
+            raise InputError(
+                f"{wanted} trials are wanted, but the table has {executed} executed ones",
+                where=self._folder,
+                fix=f"set dataset.data.{setting} to at most as many, or to null for all",
+            )
 
     def keep_lifted(self) -> None:
         """Leave out the trials that failed, for networks that learn from successes alone.

@@ -14,6 +14,8 @@ from preshape.files import exclusive, read_json, write_json
 from preshape.provenance import provenance
 
 SUMMARY_FILE = "summary.json"
+ABOUT = ("model", "experiment", "trials", "trials_learned", "identity")
+"""What a summary says about its folds."""
 
 
 @dataclass(frozen=True)
@@ -128,7 +130,7 @@ def summarise(group: Path, identity: Mapping[str, str]) -> SweepSummary:
                 files.append(group / f"roc_{name}.png")
                 save_average_roc(files[-1], {name: curve}, f"{group.name}: {name} objects")
         first = results[0].content
-        about = {key: first[key] for key in ("model", "experiment", "trials", "identity")}
+        about = {key: first.get(key) for key in ABOUT}
         write_json(
             files[0], {**provenance(int(first["seed"])), "group": group.name, **about, "splits": splits}
         )
