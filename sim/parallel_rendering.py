@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from preshape.data.view_cache import ViewCache, one_by_one
 from preshape.data.scene import Scene
+from preshape.data.view_cache import ViewCache, one_by_one
 from preshape.errors import InputError
 from sim.workers import BeginStep, Work, Workers, available_cores
 
