@@ -2,7 +2,13 @@
 
 from preshape.data.trial import TrialOutcome
 
-PLANNERS = {"max_eval": "Max-eval", "paper": "Inference with the paper's steps"}
+PLANNERS = {
+    "max_eval": "Max-eval",
+    "cem": "Cross-entropy method",
+    "lbfgs": "L-BFGS-B",
+    "paper": "Inference with the paper's steps",
+    "planner_optimum": "Own optima",
+}
 MARKS = {
     TrialOutcome.LIFTED: "✓",
     TrialOutcome.DROPPED: "▼",

@@ -73,7 +73,8 @@ def _check_dataset_fits_robot(cfg: DictConfig) -> None:
 
 def _check_planners_have_a_network(cfg: DictConfig) -> None:
     needing = [choice for choice, node in _planners(cfg) if OmegaConf.select(node, "needs_model")]
-    if not needing:
+    trains_it = OmegaConf.select(cfg, "trainer") is not None
+    if not needing or trains_it:
         return
     planner, weights = needing[0], OmegaConf.select(cfg, "weights")
     train = "train a network with `python src/train.py` and give its file with weights=FILE.safetensors"
