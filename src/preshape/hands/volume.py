@@ -26,6 +26,10 @@ class HandVolume(nn.Module):
         palm: spheres of the palm link, (x, y, z, radius) in that link (m).
         fingers: the spheres of each link of each finger, (x, y, z, radius) in the link (m); finger f, link k
             as in `HandKinematics.link_poses`.
+        attached: further spheres that move with the palm link, such as the wrist that carries the hand.
+
+    Attributes:
+        attached: how many of the spheres, the first ones, are not the hand's own.
     """
 
     palm: Float[Tensor, "p 4"]
@@ -37,9 +41,12 @@ class HandVolume(nn.Module):
         kinematics: HandKinematics,
         palm: Float[np.ndarray, "p 4"],
         fingers: Sequence[Sequence[Float[np.ndarray, "_ 4"]]],
+        attached: Float[np.ndarray, "a 4"],
     ) -> None:
         super().__init__()
         self.kinematics = kinematics
+        self.attached = len(attached)
+        palm = np.concatenate((attached, palm))
         links = [spheres for finger in fingers for spheres in finger]
         owner = np.repeat(np.arange(len(links)), [len(spheres) for spheres in links])
         self.register_buffer("palm", torch.from_numpy(palm), persistent=False)
@@ -62,8 +69,7 @@ class HandVolume(nn.Module):
             path: the URDF.
             kinematics: the hand's kinematics.
             palm_link, tip_links: as for `HandKinematics.from_urdf`.
-            attached: further spheres that move with the palm link, (x, y, z, radius) in it (m), such as the
-                wrist that carries the hand.
+            attached: further spheres that move with the palm link, (x, y, z, radius) in it (m).
 
         Raises:
             InputError: the URDF cannot be read, or lacks what is asked of it.
@@ -74,11 +80,11 @@ class HandVolume(nn.Module):
             for tip in tip_links
         ]
         palm = _spheres_of(urdf.collision_boxes(palm_link))
-        return cls(kinematics, np.concatenate((palm, np.array(attached).reshape(-1, 4))), fingers)
+        return cls(kinematics, palm, fingers, np.array(attached, dtype=np.float64).reshape(-1, 4))
 
     @property
     def radii(self) -> Float[Tensor, "k"]:
-        """Radii of the k spheres (m), in the order of `centres`: the palm link's, then the fingers'."""
+        """Radii of the k spheres (m), in the order of `centres`: what is attached, the palm, the fingers."""
         return torch.cat((self.palm[:, 3], self.links[:, 3]))
 
     def centres(self, theta: Float[Tensor, "b d"]) -> Float[Tensor, "b k 3"]:

@@ -30,7 +30,7 @@ class HandClearance:
     beginning and at the end of this line keeps it free of the table all along it.
 
     Args:
-        hand: the space that the hand takes up.
+        hand: the space that the hand takes up. What is attached to it is kept off the table only.
         table_m: least distance of the hand from the table.
         object_depth_m: how deep the hand may be in the object; closing starts there, and depth is noisy.
         pregrasp_m: least distance of the hand from the object where the approach begins.
@@ -59,17 +59,17 @@ class ViewClearance:
         self._plane = torch.from_numpy(segmented.plane).double()
 
     def slack(self, theta: Float64[Tensor, "s d"]) -> Float64[Tensor, "s k"]:
-        """For each sphere of the hand: over the table, out of the object, out of it before the approach."""
+        """For each sphere: over the table; for the hand's own: out of the object, and before the approach."""
         demands, up = self._demands, self._plane[:3]
-        hand = demands.hand.centres(theta)
-        radii = demands.hand.radii
-        back = -demands.approach_m * demands.hand.kinematics.palm_link_pose(theta)[:, None, :3, 0]
-        lowest = hand @ up + self._plane[3] + (back @ up).clamp_max(0.0)
+        volume = demands.hand
+        spheres, radii = volume.centres(theta), volume.radii
+        back = -demands.approach_m * volume.kinematics.palm_link_pose(theta)[:, None, :3, 0]
+        lowest = spheres @ up + self._plane[3] + (back @ up).clamp_max(0.0) - radii
+        hand, radii = spheres[:, volume.attached :], radii[volume.attached :]
         distance = self._solid.distance(torch.cat((hand, hand + back), dim=1))
         here, before = (distance - radii.repeat(2)).chunk(2, dim=1)
         return torch.cat(
-            (lowest - radii - demands.table_m, here + demands.object_depth_m, before - demands.pregrasp_m),
-            dim=1,
+            (lowest - demands.table_m, here + demands.object_depth_m, before - demands.pregrasp_m), dim=1
         )
 
 
