@@ -2,14 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-
 import numpy as np
 from jaxtyping import Bool, Float
 from matplotlib.figure import Figure
 from sklearn.metrics import roc_auc_score, roc_curve
-
-from preshape.files import atomic_path
 
 POINTS = 201
 """False positive rates at which curves are averaged, from 0 to 1."""
@@ -75,22 +71,15 @@ def _at(
     return rates
 
 
-def save_average_roc(
-    path: str | Path,
-    curves: Mapping[str, AverageRoc],
-    title: str,
-    references: Mapping[str, str] | None = None,
-) -> None:
-    """Draw average ROC curves with a band of one standard deviation, and that of chance, atomically.
+def average_roc_figure(
+    curves: Mapping[str, AverageRoc], title: str, references: Mapping[str, str] | None = None
+) -> Figure:
+    """Average ROC curves with a band of one standard deviation, and that of chance.
 
     Args:
-        path: the picture.
         curves: curves by their names.
         title: stands above.
         references: areas of others to compare with, as text by the names of the curves.
-
-    Raises:
-        InputError: if the place cannot be written to.
     """
     figure = Figure(figsize=(5.2, 5.2), layout="constrained")
     axes = figure.subplots()
@@ -111,5 +100,4 @@ def save_average_roc(
         ylim=(-0.02, 1.02),
     )
     axes.legend(loc="lower right", fontsize=8)
-    with atomic_path(path) as temporary:
-        figure.savefig(temporary, dpi=150)
+    return figure

@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 
 from preshape.errors import InputError
-from preshape.evaluation.average_roc import AverageRoc, Fold, average_roc, save_average_roc
-from preshape.files import exclusive, read_json, write_json
+from preshape.evaluation.average_roc import AverageRoc, Fold, average_roc, average_roc_figure
+from preshape.files import atomic_path, exclusive, read_json, write_json
 from preshape.provenance import provenance
 
 SUMMARY_FILE = "summary.json"
@@ -128,7 +128,9 @@ def summarise(group: Path, identity: Mapping[str, str]) -> SweepSummary:
             curve = split_roc(folds)
             if curve is not None:
                 files.append(group / f"roc_{name}.png")
-                save_average_roc(files[-1], {name: curve}, f"{group.name}: {name} objects")
+                figure = average_roc_figure({name: curve}, f"{group.name}: {name} objects")
+                with atomic_path(files[-1]) as temporary:
+                    figure.savefig(temporary, dpi=150)
         first = results[0].content
         about = {key: first.get(key) for key in ABOUT}
         write_json(

@@ -1,0 +1,124 @@
+"""The report of all trainings: result file, charts, and the section of the results page."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from analysis import learning_charts as charts
+from analysis import learning_tables as tables
+from analysis.chart_files import save_chart
+from analysis.learning_runs import LearningRun, read_runs
+from analysis.results_page import put_section
+from preshape.evaluation.average_roc import average_roc_figure
+from preshape.evaluation.fold_summary import split_roc
+from preshape.files import write_json
+from preshape.provenance import command_line, git_revision, provenance
+
+Key = tuple[str, str]
+"""Group and split of a run."""
+
+
+@dataclass(frozen=True)
+class LearningReport:
+    """The report of all sweeps that were finished.
+
+    Args:
+        runs: folder with the groups of the sweeps, as `src/train.py --multirun` makes it.
+        paper: groups of the paper's networks, trained as in the paper, by `config_cnn`, `patches_cnn` and
+            `regression`.
+        default: group of the default model.
+        ablations: tables by their headings; each has groups by what is written beside them.
+        learning_curves: sweeps over the number of trials by what is written beside them: the group with all
+            trials, and the beginning of the names of the groups with fewer.
+        output: the result file.
+        page: results page; pictures lie in `pictures` beside it.
+        seed: seed of the trainings, for the result file.
+    """
+
+    runs: str
+    paper: Mapping[str, str]
+    default: str
+    ablations: Mapping[str, Mapping[str, str]]
+    learning_curves: Mapping[str, Mapping[str, str]]
+    output: str
+    page: str
+    seed: int
+
+    def write(self) -> str:
+        """Write everything and say what came out.
+
+        Raises:
+            InputError: if there is no sweep, a file cannot be read, or one cannot be written.
+        """
+        runs = {(run.group, run.split): run for run in read_runs(self.runs)}
+        figures = [run.figures() for run in runs.values()]
+        write_json(self.output, {**provenance(self.seed), "runs": figures})
+        parts = [
+            ["## Learning"],
+            [
+                f"Made by `{command_line()}` at revision `{git_revision()}` from sweeps of `src/train.py`; "
+                "mean ± standard deviation over folds. What says *not run* has not been measured."
+            ],
+            *self._classification(runs),
+            *self._regression(runs),
+            *self._ablations(runs),
+            *self._learning_curves(runs),
+        ]
+        text = "\n".join(line for part in parts for line in (*part, ""))
+        put_section(Path(self.page), "learning", text.rstrip("\n"))
+        return f"{len(figures)} runs of sweeps. Result file: {self.output}, page: {self.page}"
+
+    def _classification(self, runs: Mapping[Key, LearningRun]) -> list[list[str]]:
+        parts = [["### Classification"], tables.classification_lines(runs, self._networks())]
+        for name, group, references in (
+            ("config_cnn", self.paper["config_cnn"], tables.PAPER_AUC),
+            ("default", self.default, {}),
+        ):
+            splits = {split: run for (own, split), run in runs.items() if own == group}
+            curves = {split: split_roc(run.folds) for split, run in splits.items()}
+            known = {split: curve for split, curve in curves.items() if curve is not None}
+            if known:
+                path = self._picture(f"roc_{name}")
+                save_chart(average_roc_figure(known, f"{group}: average of the folds", references), path)
+                parts.append([_shown(path, f"Average ROC curves of {group}")])
+        shown = [run for run in runs.values() if run.group in (self.paper["config_cnn"], self.default)]
+        if shown:
+            for name, figure in (
+                ("reliability", charts.reliability_charts(shown)),
+                ("training_curves", charts.training_curves(shown)),
+            ):
+                save_chart(figure, self._picture(name))
+                parts.append([_shown(self._picture(name), charts.CAPTIONS[name])])
+        return parts
+
+    def _networks(self) -> dict[str, str]:
+        return {
+            "config-CNN, as in the paper": self.paper["config_cnn"],
+            "patches-CNN, as in the paper": self.paper["patches_cnn"],
+            "default model": self.default,
+        }
+
+    def _regression(self, runs: Mapping[Key, LearningRun]) -> list[list[str]]:
+        return [["### Regression"], tables.regression_lines(runs, self.paper["regression"])]
+
+    def _ablations(self, runs: Mapping[Key, LearningRun]) -> list[list[str]]:
+        return [
+            part
+            for heading, groups in self.ablations.items()
+            for part in ([f"### {heading}"], tables.comparison_lines(runs, groups))
+        ]
+
+    def _learning_curves(self, runs: Mapping[Key, LearningRun]) -> list[list[str]]:
+        parts = [["### Number of trials"], tables.learning_curve_lines(runs, self.learning_curves)]
+        figure = charts.learning_curves(runs, self.learning_curves)
+        if figure is not None:
+            save_chart(figure, self._picture("learning_curves"))
+            parts.append([_shown(self._picture("learning_curves"), charts.CAPTIONS["learning_curves"])])
+        return parts
+
+    def _picture(self, name: str) -> Path:
+        return Path(self.page).parent / "pictures" / f"learning_{name}.png"
+
+
+def _shown(path: Path, caption: str) -> str:
+    return f"![{caption}](pictures/{path.name})"
