@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+
 import numpy as np
 from jaxtyping import Bool, Float
 from matplotlib.figure import Figure
