@@ -14,9 +14,9 @@ from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 
 import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
-from preshape.data.view_cache import ViewCache
 from preshape.data.scene import Scene
 from preshape.data.tables import SCENES_FILE, read_scenes
+from preshape.data.view_cache import ViewCache
 from preshape.paths import project_root
 from sim.workers import ONE_THREAD
 

@@ -1,4 +1,4 @@
-"""Train a network that predicts grasp success: `python src/train.py model=config_cnn`."""
+"""Train a network that predicts grasp success: `python src/train.py`."""
 
 import logging
 from pathlib import Path

@@ -10,7 +10,7 @@ import torch
 from preshape.checkpoints import save_weights
 from preshape.data.tables import read_data_set
 from preshape.grasps.space import GraspSpace
-from preshape.models.config_cnn import ConfigCNN
+from preshape.models.palm_points import PalmPoints
 from preshape.paths import project_root
 
 
@@ -25,7 +25,7 @@ def run(place: Path, script: str, *overrides: str) -> "subprocess.CompletedProce
 
 def test_planners_compete_on_one_scene_and_a_page_shows_it(tmp_path: Path, allegro_space: GraspSpace) -> None:
     torch.manual_seed(0)
-    model = ConfigCNN("config_cnn", allegro_space.name, allegro_space.dim)
+    model = PalmPoints("palm_points", allegro_space.name, allegro_space.dim)
     weights = tmp_path / "model.safetensors"
     save_weights(weights, model, data_hash="none", git_revision="none", metrics={})
     done = run(
@@ -40,7 +40,7 @@ def test_planners_compete_on_one_scene_and_a_page_shows_it(tmp_path: Path, alleg
         ),
     )
     assert done.returncode == 0, done.stderr
-    folder = tmp_path / "outputs" / "evaluate" / "config_cnn"
+    folder = tmp_path / "outputs" / "evaluate" / "palm_points"
     summary = json.loads((folder / "evaluation.json").read_text())["planners"]
     assert set(summary) == {"heuristic", "max_eval", "inference"}
     scenes, trials = read_data_set(folder, allegro_space)

@@ -12,7 +12,7 @@ from PIL import Image
 from synthetic_scenes import BoxRenderer, make_scene
 
 from preshape.checkpoints import save_weights
-from preshape.models.config_cnn import ConfigCNN
+from preshape.models.palm_points import PalmPoints
 from preshape.perception.view_files import save_view
 
 PLAN = Path(__file__).parents[2] / "src" / "plan.py"
@@ -29,7 +29,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("plan")
     save_view(folder / "view", BoxRenderer()(make_scene(0)))
     torch.manual_seed(0)
-    model = ConfigCNN("config_cnn", "allegro_palm14", 14)
+    model = PalmPoints("palm_points", "allegro_palm14", 14)
     save_weights(folder / "model.safetensors", model, data_hash="none", git_revision="none", metrics={})
     return folder
 

@@ -31,7 +31,8 @@ def run_train(place: Path, *overrides: str) -> "subprocess.CompletedProcess[str]
         "dataset.data.views.renderer={_target_:synthetic_scenes.BoxRenderer}",
         "dataset.data.views.maker=null",
         "dataset.data.hold_out.validation_fraction=0.25",
-        "trainer.settings.learning.iterations=6",
+        "learning.settings.iterations=6",
+        "learning.batch_size=8",
         "trainer.batches_per_epoch=3",
         *overrides,
     ]
@@ -44,7 +45,7 @@ def run_train(place: Path, *overrides: str) -> "subprocess.CompletedProcess[str]
 def test_a_training_from_tables_to_tracked_weights(place: Path) -> None:
     done = run_train(place)
     assert done.returncode == 0, done.stderr
-    folder = place / "outputs" / "train" / "config_cnn"
+    folder = place / "outputs" / "train" / "palm_points"
     metrics = json.loads((folder / "metrics.json").read_text())
     assert metrics["command"].startswith("python src/train.py")
     last_line = done.stdout.splitlines()[-1]
@@ -58,7 +59,7 @@ def test_a_training_from_tables_to_tracked_weights(place: Path) -> None:
     assert experiment is not None
     (run,) = client.search_runs([experiment.experiment_id])
     assert run.info.status == "FINISHED"
-    assert run.data.params["model.name"] == "config_cnn"
+    assert run.data.params["model.name"] == "palm_points"
     assert [point.step for point in client.get_metric_history(run.info.run_id, "train_loss")] == [3, 6]
     kept = {file.path for file in client.list_artifacts(run.info.run_id)}
     assert {"roc.png", "model.safetensors", "model.safetensors.json", "metrics.json"} <= kept
