@@ -36,24 +36,18 @@ def allegro_hand(palm_offset_m: Sequence[float] = (0.0, 0.0, 0.0)) -> HandKinema
     )
 
 
-def allegro_volume(
-    palm_offset_m: Sequence[float] = (0.0, 0.0, 0.0), attached: Sequence[Sequence[float]] = ()
-) -> HandVolume:
-    """The space that the right Allegro hand takes up.
-
-    Args:
-        palm_offset_m: as for `allegro_hand`.
-        attached: spheres behind the palm, (x, y, z, radius) in the palm link (m).
+def allegro_volume(palm_offset_m: Sequence[float] = (0.0, 0.0, 0.0)) -> HandVolume:
+    """The space that the right Allegro hand takes up, for the theta of `allegro_hand`.
 
     Raises:
         InputError: the hand's model is not installed.
     """
     return HandVolume.from_urdf(
         allegro_urdf(),
-        allegro_hand(palm_offset_m),
         palm_link=PALM_LINK,
         tip_links=TIP_LINKS,
-        attached=attached,
+        preshape_joints=PRESHAPE_JOINTS,
+        palm_offset_m=palm_offset_m,
     )
 
 

@@ -1,103 +1,178 @@
 """The space that a hand takes up, as spheres that move with theta."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-import torch
-from jaxtyping import Float, Int
-from torch import Tensor, nn
+from jaxtyping import Float, Float64, Int
 
 from preshape.geometry.pose import transform_points
-from preshape.hands.kinematics import HandKinematics
-from preshape.hands.urdf_chain import Box, Urdf
+from preshape.hands.urdf_chain import Box, Joint, Urdf
 
 OVERLAP = 1.2
 """Distance of neighbouring spheres in a box, as a multiple of their radius."""
 
 
-class HandVolume(nn.Module):
-    """Spheres that fill the collision shapes of a hand, in the frame of theta's palm pose.
+class HandVolume:
+    """Spheres that fill the collision shapes of a hand.
 
     The spheres of a box touch its faces from within, so that they reach every face and round off its edges.
+    Planners ask for them at every step, for a few grasps at a time. Therefore positions and their derivatives
+    are worked out here in NumPy: automatic differentiation of as many small products is ten times slower.
 
     Args:
-        kinematics: where the links are.
-        palm: spheres of the palm link, (x, y, z, radius) in that link (m).
-        fingers: the spheres of each link of each finger, (x, y, z, radius) in the link (m); finger f, link k
-            as in `HandKinematics.link_poses`.
-        attached: further spheres that move with the palm link, such as the wrist that carries the hand.
-
-    Attributes:
-        attached: how many of the spheres, the first ones, are not the hand's own.
+        palm: spheres that move with the palm alone, (x, y, z, radius) in theta's palm frame (m).
+        fingers: the joints of each finger from the palm link to the tip, the first with its pose in theta's
+            palm frame.
+        spheres: the spheres of each link of each finger, (x, y, z, radius) in the link (m).
+        preshape_joints: the joints that theta sets after its palm pose, in its order; others are at zero.
     """
-
-    palm: Float[Tensor, "p 4"]
-    links: Float[Tensor, "n 4"]
-    link_index: Int[Tensor, "n"]
 
     def __init__(
         self,
-        kinematics: HandKinematics,
         palm: Float[np.ndarray, "p 4"],
-        fingers: Sequence[Sequence[Float[np.ndarray, "_ 4"]]],
-        attached: Float[np.ndarray, "a 4"],
+        fingers: Sequence[Sequence[Joint]],
+        spheres: Sequence[Sequence[Float[np.ndarray, "_ 4"]]],
+        preshape_joints: Sequence[str],
     ) -> None:
-        super().__init__()
-        self.kinematics = kinematics
-        self.attached = len(attached)
-        palm = np.concatenate((attached, palm))
-        links = [spheres for finger in fingers for spheres in finger]
-        owner = np.repeat(np.arange(len(links)), [len(spheres) for spheres in links])
-        self.register_buffer("palm", torch.from_numpy(palm), persistent=False)
-        self.register_buffer("links", torch.from_numpy(np.concatenate(links)), persistent=False)
-        self.register_buffer("link_index", torch.from_numpy(owner), persistent=False)
+        self._dim = 6 + len(preshape_joints)
+        index = {name: 6 + number for number, name in enumerate(preshape_joints)}
+        parts = [
+            _Chain.to_link(chain[: link + 1], index).carrying(found)
+            for chain, links in zip(fingers, spheres, strict=True)
+            for link, found in enumerate(links)
+            if len(found)
+        ]
+        depth = max(len(part.matrices) for part, _ in parts)
+        deep = [(part.deepened(depth, self._dim), found) for part, found in parts]
+        counts = [len(found) for _, found in deep]
+        self._palm = palm[:, :3]
+        self._local = np.concatenate([found[:, :3] for _, found in deep])
+        self._matrices = np.repeat(np.array([part.matrices for part, _ in deep]), counts, axis=0)
+        self._shifts = np.repeat(np.array([part.shifts for part, _ in deep]), counts, axis=0)
+        self._index: Int[np.ndarray, "n l"] = np.repeat([part.index for part, _ in deep], counts, axis=0)
+        self.radii = np.concatenate((palm[:, 3], *(found[:, 3] for _, found in deep)))
+        """Radii of the k spheres (m): those of the palm first."""
 
     @classmethod
     def from_urdf(
         cls,
         path: Path,
-        kinematics: HandKinematics,
         *,
         palm_link: str,
         tip_links: Sequence[str],
-        attached: Sequence[Sequence[float]] = (),
+        preshape_joints: Sequence[str],
+        palm_offset_m: Sequence[float] = (0.0, 0.0, 0.0),
     ) -> "HandVolume":
-        """Volume of the hand whose kinematics come from the same file and links.
-
-        Args:
-            path: the URDF.
-            kinematics: the hand's kinematics.
-            palm_link, tip_links: as for `HandKinematics.from_urdf`.
-            attached: further spheres that move with the palm link, (x, y, z, radius) in it (m).
+        """Volume of the hand whose kinematics `HandKinematics.from_urdf` reads.
 
         Raises:
             InputError: the URDF cannot be read, or lacks what is asked of it.
         """
-        urdf = Urdf(path)
-        fingers = [
-            [_spheres_of(urdf.collision_boxes(link)) for link in urdf.links(palm_link, tip)]
-            for tip in tip_links
-        ]
+        urdf, offset = Urdf(path), np.asarray(palm_offset_m, dtype=np.float64)
+        fingers, spheres = [], []
+        for tip in tip_links:
+            first, *others = urdf.chain(palm_link, tip)
+            pose = first.T_parent_child.copy()
+            pose[:3, 3] -= offset
+            fingers.append([Joint(first.name, pose, first.axis), *others])
+            spheres.append([_spheres_of(urdf.collision_boxes(link)) for link in urdf.links(palm_link, tip)])
         palm = _spheres_of(urdf.collision_boxes(palm_link))
-        return cls(kinematics, palm, fingers, np.array(attached, dtype=np.float64).reshape(-1, 4))
+        palm[:, :3] -= offset
+        return cls(palm, fingers, spheres, preshape_joints)
 
-    @property
-    def radii(self) -> Float[Tensor, "k"]:
-        """Radii of the k spheres (m), in the order of `centres`: what is attached, the palm, the fingers."""
-        return torch.cat((self.palm[:, 3], self.links[:, 3]))
+    def in_palm(self, theta: Float64[np.ndarray, "s d"]) -> Float64[np.ndarray, "s k 3"]:
+        """Centres of the k spheres in theta's palm frame (m), which depend on the joints alone."""
+        return self._turned(theta)[0]
 
-    def centres(self, theta: Float[Tensor, "b d"]) -> Float[Tensor, "b k 3"]:
-        """Centres of the k spheres (m), differentiable in theta."""
-        palm, links = self.kinematics.palm_link_pose(theta), self.kinematics.link_poses(theta)
-        carriers = links.flatten(1, 2)[:, self.link_index]
-        on_links = (carriers[..., :3, :3] @ self.links[:, :3, None].to(theta))[..., 0] + carriers[..., :3, 3]
-        on_palm = self.palm[:, :3].to(theta) @ palm[:, :3, :3].mT + palm[:, None, :3, 3]
-        return torch.cat((on_palm, on_links), dim=1)
+    def joint_gradient(
+        self, theta: Float64[np.ndarray, "s d"], gradient: Float64[np.ndarray, "s k 3"]
+    ) -> Float64[np.ndarray, "s d"]:
+        """Gradient by the joints of a function whose gradient by the centres in the palm frame is given."""
+        _, turned, sines, versines = self._turned(theta)
+        total = np.zeros((len(theta), self._dim + 1))
+        flowing = gradient[:, len(self._palm) :]
+        for level, products in enumerate(turned):
+            sine, versine = sines[:, :, level, None], versines[:, :, level, None]
+            slope = (1 - versine) * products[:, :, 1] + sine * products[:, :, 2]
+            by_angle = (flowing * slope).sum(axis=2)
+            for column in np.unique(self._index[:, level]):
+                total[:, column] += by_angle[:, self._index[:, level] == column].sum(axis=1)
+            back = np.einsum("ncij,sni->sncj", self._matrices[:, level], flowing)
+            flowing = back[:, :, 0] + sine * back[:, :, 1] + versine * back[:, :, 2]
+        return total[:, : self._dim]
+
+    def _turned(
+        self, theta: Float64[np.ndarray, "s d"]
+    ) -> tuple[
+        Float64[np.ndarray, "s k 3"],
+        list[Float64[np.ndarray, "s n 3 3"]],
+        Float64[np.ndarray, "s n l"],
+        Float64[np.ndarray, "s n l"],
+    ]:
+        """Centres, and for each level of joints, the innermost last, what the turns are made of."""
+        angles = np.concatenate((theta, np.zeros((len(theta), 1))), axis=1)
+        sines, versines = np.sin(angles)[:, self._index], (1 - np.cos(angles))[:, self._index]
+        points = np.broadcast_to(self._local, (len(theta), *self._local.shape))
+        turned: list[Float64[np.ndarray, "s n 3 3"]] = []
+        for level in reversed(range(self._index.shape[1])):
+            # Rodrigues: a turn by q is 1 + sin q K + (1 - cos q) K^2, with K p = axis x p.
+            products = np.einsum("ncij,snj->snci", self._matrices[:, level], points)
+            sine, versine = sines[:, :, level, None], versines[:, :, level, None]
+            points = products[:, :, 0] + sine * products[:, :, 1] + versine * products[:, :, 2]
+            points = points + self._shifts[:, level]
+            turned.insert(0, products)
+        palm = np.broadcast_to(self._palm, (len(theta), *self._palm.shape))
+        return np.concatenate((palm, points), axis=1), turned, sines, versines
+
+
+class _Chain:
+    """The turns that lead from the palm to a link: for each joint of theta F, F K and F K^2, and a shift.
+
+    F is the rotation, and the shift the translation, from the frame of the joint before, through joints that
+    stay at zero.
+    """
+
+    def __init__(self, index: Mapping[str, int]) -> None:
+        self._theta_index = index
+        self._pose = np.eye(4)
+        self.matrices: list[Float[np.ndarray, "3 3 3"]] = []
+        self.shifts: list[Float[np.ndarray, "3"]] = []
+        self.index: list[int] = []
+
+    @classmethod
+    def to_link(cls, joints: Sequence[Joint], index: Mapping[str, int]) -> "_Chain":
+        chain = cls(index)
+        for joint in joints:
+            chain._pose = chain._pose @ joint.T_parent_child
+            if joint.name in index:
+                x, y, z = joint.axis
+                cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+                chain._append(index[joint.name], cross)
+        return chain
+
+    def _append(self, column: int, cross: Float[np.ndarray, "3 3"]) -> None:
+        rotation = self._pose[:3, :3]
+        self.matrices.append(np.stack((rotation, rotation @ cross, rotation @ cross @ cross)))
+        self.shifts.append(self._pose[:3, 3])
+        self.index.append(column)
+        self._pose = np.eye(4)
+
+    def carrying(self, spheres: Float[np.ndarray, "n 4"]) -> tuple["_Chain", Float[np.ndarray, "n 4"]]:
+        """The chain, and spheres of its link in the frame of its last joint of theta."""
+        placed = transform_points(self._pose, spheres[:, :3])
+        return self, np.column_stack((placed, spheres[:, 3]))
+
+    def deepened(self, depth: int, unmoved: int) -> "_Chain":
+        """The chain with joints that do not turn at its end, so that all chains have equally many."""
+        self._pose = np.eye(4)
+        while len(self.matrices) < depth:
+            self._append(unmoved, np.zeros((3, 3)))
+        return self
 
 
 def _spheres_of(boxes: Sequence[Box]) -> Float[np.ndarray, "n 4"]:
-    """Spheres (x, y, z, radius) that fill rounded boxes, in their link."""
+    """Spheres (x, y, z, radius) that fill boxes, in their link."""
     return np.concatenate([np.zeros((0, 4)), *(_spheres_in(box) for box in boxes)])
 
 

@@ -3,11 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-import torch
 from jaxtyping import Bool, Float, Float64
 from scipy import ndimage
-from torch import Tensor
-from torch.nn.functional import grid_sample
 
 from preshape.geometry.pose import invert_pose, transform_points
 from preshape.perception.segmentation import SegmentedObject
@@ -38,27 +35,61 @@ class ObjectSolid:
     """
 
     def __init__(self, segmented: SegmentedObject, settings: SolidSettings) -> None:
-        self._voxel_m = settings.voxel_m
         T_box_camera = invert_pose(segmented.T_camera_box)
         filled = _columns(transform_points(T_box_camera, segmented.points), segmented.extents, settings)
-        distance = _signed_distance(filled, settings.voxel_m).astype(np.float32)
-        # `grid_sample` wants the last coordinate first.
-        self._field = torch.from_numpy(distance)[None, None]
-        cells = np.array(filled.shape)
-        half = settings.voxel_m * (cells - 1) / 2
+        self._field = _signed_distance(filled, settings.voxel_m)
+        self._cells = np.array(filled.shape)
         # The voxels stand on the table and are centred on the box.
-        middle = np.array([0.0, 0.0, (cells[2] * settings.voxel_m - segmented.extents[2]) / 2])
-        self._rotation = torch.from_numpy(T_box_camera[:3, :3])
-        self._shift = torch.from_numpy(T_box_camera[:3, 3] - middle)
-        self._half = torch.from_numpy(half)
+        low = -settings.voxel_m * (self._cells - 1) / 2
+        low[2] = settings.voxel_m / 2 - segmented.extents[2] / 2
+        self._rotation = T_box_camera[:3, :3] / settings.voxel_m
+        self._shift = (T_box_camera[:3, 3] - low) / settings.voxel_m
+        corners = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij"), axis=-1).reshape(8, 3)
+        self._strides = np.array([self._cells[1] * self._cells[2], self._cells[2], 1])
+        self._corners = corners @ self._strides
 
-    def distance(self, points: Float64[Tensor, "b k 3"]) -> Float64[Tensor, "b k"]:
-        """Signed distance (m) of points in the camera frame, negative inside; differentiable."""
-        grid = ((points @ self._rotation.T + self._shift) / self._half).float().flip(-1)
-        sampled = grid_sample(
-            self._field, grid[None, None], mode="bilinear", padding_mode="border", align_corners=True
+    def distance(self, points: Float64[np.ndarray, "*b 3"]) -> Float64[np.ndarray, "*b"]:
+        """Signed distance (m) of points in the camera frame, negative inside.
+
+        Far away it is that of the nearest place where it is known.
+        """
+        values, part = self._corner_values(points)
+        for axis in range(3):
+            half = values.shape[-1] // 2
+            values = values[..., :half] + part[..., axis, None] * (values[..., half:] - values[..., :half])
+        return values[..., 0]
+
+    def gradient(self, points: Float64[np.ndarray, "*b 3"]) -> Float64[np.ndarray, "*b 3"]:
+        """Gradient of the distance, in the camera frame; zero along axes on which a point is far away."""
+        values, part = self._corner_values(points)
+        cube = values.reshape(*values.shape[:-1], 2, 2, 2)
+        low, high = 1 - part, part
+        weights = np.stack((low, high), axis=-1)
+        x, y, z = (weights[..., axis, :] for axis in range(3))
+        slope = np.array([-1.0, 1.0])
+        by_cell = np.stack(
+            (
+                np.einsum("...ijk,i,...j,...k->...", cube, slope, y, z),
+                np.einsum("...ijk,...i,j,...k->...", cube, x, slope, z),
+                np.einsum("...ijk,...i,...j,k->...", cube, x, y, slope),
+            ),
+            axis=-1,
         )
-        return sampled[0, 0, 0].double()
+        place = points @ self._rotation.T + self._shift
+        known = (place > 0) & (place < self._cells - 1)
+        gradient: Float64[np.ndarray, "*b 3"] = (by_cell * known) @ self._rotation
+        return gradient
+
+    def _corner_values(
+        self, points: Float64[np.ndarray, "*b 3"]
+    ) -> tuple[Float64[np.ndarray, "*b 8"], Float64[np.ndarray, "*b 3"]]:
+        """Distances at the 8 voxels around points, and where between them each point lies, from 0 to 1."""
+        place = np.clip(points @ self._rotation.T + self._shift, 0.0, self._cells - 1.0)
+        first = np.minimum(place.astype(int), self._cells - 2)
+        values: Float64[np.ndarray, "*b 8"] = self._field.ravel()[
+            (first @ self._strides)[..., None] + self._corners
+        ]
+        return values, place - first
 
 
 def _columns(

@@ -15,8 +15,9 @@ from preshape.perception.observation import Observation
 from preshape.perception.segmentation import SegmentationSettings, SegmentedObject, segment
 from preshape.perception.view_batch import ViewBatch
 from preshape.planning.bounds import Bounds, BoxSize
-from preshape.planning.constraint import ConstrainedObjective, HandClearance
+from preshape.planning.constraint import ConstrainedObjective
 from preshape.planning.grasp_plan import GraspPlan
+from preshape.planning.hand_clearance import HandClearance
 from preshape.planning.objective import Objective, SuccessObjective, UnknownSuccess
 from preshape.planning.planner import Planner
 
