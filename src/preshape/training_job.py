@@ -16,7 +16,10 @@ from preshape.source_digest import source_digest
 from preshape.tracking import SweepMember, TrackedRun, Tracking
 from preshape.training import METRICS_FILE, WEIGHTS_FILE, TrainerSettings, keep_files, train
 
-DECISIVE = ("preshape.data.data_module", "preshape.measuring", "preshape.models.lightning_module")
+DECISIVE = (
+    *("preshape.data.data_module", "preshape.measuring"),
+    *("preshape.models.callbacks", "preshape.models.lightning_module"),
+)
 """Modules whose code decides weights and figures, besides that of the network."""
 WITHOUT_INFLUENCE = (
     *("paths", "tracking", "run_name", "split", "fold", "retrain_after_code_changes"),
