@@ -2,6 +2,8 @@
 
 import hashlib
 import logging
+import os
+import sys
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -130,7 +132,7 @@ def _fit(
     _quieten_lightning()
     validated = len(data.validation) > 0
     curves = TrackCurves(run)
-    callbacks = [ShowProgress(), curves, Resumable(unfinished)]
+    callbacks = [*([ShowProgress()] if is_first_process() else []), curves, Resumable(unfinished)]
     if settings.keep_best and validated:
         callbacks.insert(0, KeepBest())
     trainer = lightning.Trainer(
@@ -141,6 +143,7 @@ def _fit(
         max_epochs=-1,
         limit_val_batches=None if validated else 0,
         num_sanity_val_steps=0,
+        use_distributed_sampler=False,
         callbacks=callbacks,
         logger=False,
         enable_checkpointing=False,
@@ -162,7 +165,14 @@ def _fit(
         if isinstance(end.__context__, KeyboardInterrupt):
             raise KeyboardInterrupt from end
         raise
+    if not is_first_process():  # the first one measures and writes
+        sys.exit(0)
     return curves.points
+
+
+def is_first_process() -> bool:
+    """Whether this is the only process, or the first of those that train together."""
+    return os.environ.get("LOCAL_RANK", "0") == "0"  # set by Lightning for the others
 
 
 def _keep(

@@ -13,8 +13,8 @@ from preshape.files import read_json
 from preshape.models.success_model import GraspNetwork
 from preshape.provenance import git_revision
 from preshape.source_digest import source_digest
-from preshape.tracking import SweepMember, TrackedRun, Tracking
-from preshape.training import METRICS_FILE, WEIGHTS_FILE, TrainerSettings, keep_files, train
+from preshape.tracking import NoTracking, SweepMember, TrackedRun, Tracking
+from preshape.training import METRICS_FILE, WEIGHTS_FILE, TrainerSettings, is_first_process, keep_files, train
 
 DECISIVE = (
     *("preshape.data.data_module", "preshape.measuring"),
@@ -64,6 +64,7 @@ class TrainingJob:
         """
         if not self.in_sweep:
             data.setup()
+            tracking = tracking if is_first_process() else NoTracking()
             with tracking.run(self.name, self.config, {"git_revision": git_revision()}) as run:
                 result = train(model, data, settings, self.folder, run, self._description(model, data))
             return f"{self.name}: {result.metrics.summary()}; weights: {result.weights}"

@@ -25,6 +25,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def run_train(place: Path, *overrides: str) -> "subprocess.CompletedProcess[str]":
     command = [
         *(sys.executable, str(project_root() / "src" / "train.py")),
+        *(override for override in overrides if override.startswith("--")),
         *(f"paths.{name}={place / name}" for name in ("data", "cache", "outputs")),
         f"tracking.database={place / 'mlflow.db'}",
         f"tracking.artifacts={place / 'mlartifacts'}",
@@ -34,7 +35,7 @@ def run_train(place: Path, *overrides: str) -> "subprocess.CompletedProcess[str]
         "learning.settings.iterations=6",
         "learning.batch_size=8",
         "trainer.batches_per_epoch=3",
-        *overrides,
+        *(override for override in overrides if not override.startswith("--")),
     ]
     environment = {**os.environ, "PYTHONPATH": str(FIXTURES)}
     return subprocess.run(
@@ -63,6 +64,31 @@ def test_a_training_from_tables_to_tracked_weights(place: Path) -> None:
     assert [point.step for point in client.get_metric_history(run.info.run_id, "train_loss")] == [3, 6]
     kept = {file.path for file in client.list_artifacts(run.info.run_id)}
     assert {"roc.png", "model.safetensors", "model.safetensors.json", "metrics.json"} <= kept
+
+
+def test_a_sweep_from_an_empty_store_can_be_started_again(place: Path) -> None:
+    sweep = ("run_name=sweep", "tracking.database=${paths.outputs}/sweep.db", "split=unseen", "fold=0,1")
+    begun = run_train(place, "--multirun", "hydra/launcher=joblib", "hydra.launcher.n_jobs=2", *sweep)
+    assert begun.returncode == 0, begun.stderr
+    (summary,) = (place / "outputs" / "train").glob("sweep,*/summary.json")
+    (summary.parent / "unseen_fold1" / "metrics.json").unlink()
+    again = run_train(place, "--multirun", *sweep)
+    assert again.returncode == 0, again.stderr
+    assert again.stdout.count("had been trained before") == 1
+
+    client = MlflowClient(f"sqlite:///{place / 'outputs' / 'sweep.db'}")
+    experiment = client.get_experiment_by_name("preshape")
+    assert experiment is not None
+    (parent,) = client.search_runs([experiment.experiment_id], "tags.sweep != ''")
+    children = client.search_runs(
+        [experiment.experiment_id], f"tags.`mlflow.parentRunId` = '{parent.info.run_id}'"
+    )
+    assert sorted(run.info.run_name for run in children) == ["unseen_fold0", "unseen_fold1"]
+    assert {run.info.status for run in (parent, *children)} == {"FINISHED"}
+    areas = [run.data.metrics["test_auc"] for run in children]
+    assert parent.data.metrics["unseen_auc_mean"] == pytest.approx(sum(areas) / 2)
+    kept = {file.path for file in client.list_artifacts(parent.info.run_id)}
+    assert kept == {"roc_unseen.png", "summary.json"}
 
 
 def test_a_missing_table_is_refused(place: Path) -> None:

@@ -7,7 +7,7 @@ from mlflow import MlflowClient
 
 from preshape.errors import InputError
 from preshape.mlflow_tracking import MlflowTracking, flatten
-from preshape.tracking import NoTracking, SweepKey
+from preshape.tracking import NoTracking, SweepMember
 
 
 def store(folder: Path) -> MlflowTracking:
@@ -36,6 +36,36 @@ def test_a_run_keeps_configuration_curves_and_files(tmp_path: Path) -> None:
     assert [(point.step, point.value) for point in losses] == [(10, 0.7), (20, 0.5)]
     assert [point.step for point in client.get_metric_history(finished.info.run_id, "auc")] == [20]
     assert [file.path for file in client.list_artifacts(finished.info.run_id)] == ["roc.png"]
+
+
+def test_a_sweep_is_one_run_with_a_child_of_each_name(tmp_path: Path) -> None:
+    def fold(name: str, digest: str, trained: bool = False, broken: bool = False) -> None:
+        member = SweepMember("sweep", "settings", digest, trained)
+        with store(tmp_path).run(name, {"fold": name}, {}, member) as run:
+            run.log({"auc": 0.8}, step=1)
+            assert run.parent is not None
+            run.parent.log({"auc_mean": 0.7}, step=1)
+            if broken:
+                raise ValueError("broken")
+
+    def states() -> dict[str, str]:
+        client = MlflowClient(f"sqlite:///{tmp_path / 'mlflow.db'}")
+        runs = client.search_runs(["1"])
+        (parent,) = (run for run in runs if run.info.run_name == "sweep")
+        assert parent.data.metrics["auc_mean"] == 0.7
+        children = [run for run in runs if run is not parent]
+        assert {run.data.tags["mlflow.parentRunId"] for run in children} == {parent.info.run_id}
+        assert len({run.info.run_name for run in children}) == len(children)
+        return {run.info.run_name: run.info.status for run in runs}
+
+    fold("fold0", "a")
+    with pytest.raises(ValueError, match="broken"):
+        fold("fold1", "a", broken=True)
+    assert states() == {"sweep": "FAILED", "fold0": "FINISHED", "fold1": "FAILED"}
+    fold("fold1", "a")  # goes on
+    fold("fold0", "a", trained=True)  # stays
+    fold("fold0", "b")  # other code: replaced
+    assert states() == {"sweep": "FINISHED", "fold0": "FINISHED", "fold1": "FINISHED"}
 
 
 def test_a_store_that_is_none_is_refused(tmp_path: Path) -> None:

@@ -48,7 +48,8 @@ def average_roc(folds: Sequence[Fold]) -> AverageRoc | None:
     if not folds:
         return None
     grid = np.linspace(0.0, 1.0, POINTS)
-    curves = np.stack([_at(grid, *roc_curve(*fold)[:2]) for fold in folds])
+    curves = np.stack([np.interp(grid, *roc_curve(*fold)[:2]) for fold in folds])
+    curves[:, 0] = 0.0  # where they begin, even if they are vertical there
     areas = np.array([roc_auc_score(*fold) for fold in folds])
     return AverageRoc(
         false_positives=grid,
@@ -58,18 +59,6 @@ def average_roc(folds: Sequence[Fold]) -> AverageRoc | None:
         auc_std=float(areas.std()),
         folds=len(folds),
     )
-
-
-def _at(
-    grid: Float[np.ndarray, "k"],
-    false_positives: Float[np.ndarray, "p"],
-    true_positives: Float[np.ndarray, "p"],
-) -> Float[np.ndarray, "k"]:
-    """True positive rates on a grid; where a curve is vertical, its upper end, but it begins at (0, 0)."""
-    ends = np.append(false_positives[1:] != false_positives[:-1], True)
-    rates: Float[np.ndarray, "k"] = np.interp(grid, false_positives[ends], true_positives[ends])
-    rates[0] = 0.0
-    return rates
 
 
 def average_roc_figure(

@@ -70,6 +70,8 @@ class TrackCurves(Callback):
 
     def on_train_epoch_end(self, trainer: lightning.Trainer, pl_module: lightning.LightningModule) -> None:
         """One point on each curve."""
+        if self.points and self.points[-1]["iteration"] >= trainer.global_step:
+            return  # a training that goes on begins with the end of the epoch that it has behind it
         values = {name: float(value) for name, value in trainer.callback_metrics.items()}
         values["learning_rate"] = trainer.optimizers[0].param_groups[0]["lr"]
         self._run.log(values, trainer.global_step)
@@ -130,6 +132,9 @@ class Resumable(Callback):
         self._path = path
 
     def on_train_epoch_end(self, trainer: lightning.Trainer, pl_module: lightning.LightningModule) -> None:
-        """Save."""
+        """Save; of several processes that train together the first one does."""
+        if not trainer.is_global_zero:
+            trainer.save_checkpoint(self._path)  # writes nothing, but the first one waits for the others here
+            return
         with atomic_path(self._path) as temporary:
             trainer.save_checkpoint(temporary)

@@ -61,11 +61,15 @@ class GraspLightningModule(lightning.LightningModule, ABC):
         """What the weights make small."""
 
     def on_train_epoch_start(self) -> None:
-        """Make batches and dropout functions of seed and epoch: an interrupted training goes on alike."""
+        """Make batches and dropout functions of seed and epoch: an interrupted training goes on alike.
+
+        Processes that train together have batches of their own.
+        """
         loader = self.trainer.train_dataloader
         assert loader is not None, "Lightning makes it before the first epoch"
-        loader.sampler.begin_epoch(self.current_epoch)
-        torch.manual_seed(self.settings.seed + 7919 * (1 + self.current_epoch))
+        number = self.current_epoch * self.trainer.world_size + self.global_rank
+        loader.sampler.begin_epoch(number)
+        torch.manual_seed(self.settings.seed + 7919 * (1 + number))
 
     def training_step(self, batch: GraspBatch) -> Float[Tensor, ""]:
         """Loss of a batch."""

@@ -3,10 +3,16 @@
 import numpy as np
 import pytest
 import torch
-from scipy.special import expit
+from scipy.special import expit, logit
 from torchmetrics.functional.classification import binary_calibration_error
 
-from preshape.evaluation.calibration import MAX_TEMPERATURE, fit_temperature, reliability_diagram
+from preshape.data.batches import PositiveBatches
+from preshape.evaluation.calibration import (
+    MAX_TEMPERATURE,
+    fit_temperature,
+    oversampling_shift,
+    reliability_diagram,
+)
 
 
 def draw(n: int, temperature: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
@@ -58,3 +64,13 @@ def test_separable_trials_have_a_bounded_temperature() -> None:
     labels = np.array([False, True])
     assert fit_temperature(labels, np.array([-1.0, 1.0])) == pytest.approx(1 / MAX_TEMPERATURE, rel=0.01)
     assert fit_temperature(labels, np.array([1.0, -1.0])) == pytest.approx(MAX_TEMPERATURE, rel=0.01)
+
+
+@pytest.mark.parametrize("min_positives", [0, 1, 3])
+def test_oversampling_is_undone_by_the_share_that_batches_really_have(min_positives: int) -> None:
+    labels = np.arange(400) % 10 == 0
+    batches = PositiveBatches(labels, batch_size=8, min_positives=min_positives, batches=4000, seed=0)
+    drawn = np.mean([labels[batch].mean() for batch in batches])
+    shift = oversampling_shift(400, 40, batch_size=8, min_positives=min_positives)
+    assert shift == pytest.approx(logit(0.1) - logit(drawn), abs=0.03)
+    assert oversampling_shift(400, 400, batch_size=8, min_positives=min_positives) == 0.0

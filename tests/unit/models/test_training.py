@@ -10,42 +10,17 @@ import numpy as np
 import pandas as pd
 import pytest
 import torch
-from jaxtyping import Float
-from synthetic_scenes import ORIGIN, BoxRenderer, allegro_space, write_data_set
-from torch import Tensor, nn
+from scipy.special import expit
+from synthetic_scenes import write_data_set
+from tiny_training import SETTINGS, make_data, make_network
 
 from preshape.checkpoints import load_weights
-from preshape.data.data_module import BatchSettings, GraspDataModule
-from preshape.data.folds import HoldOut
-from preshape.data.view_cache import ViewCache
-from preshape.models.lightning_module import LearningSettings
+from preshape.data.data_module import GraspDataModule
+from preshape.evaluation.calibration import fit_temperature
+from preshape.measuring import measure, predict
 from preshape.models.regression_cnn import RegressionCNN
-from preshape.models.success_model import SuccessModel
-from preshape.perception.view_batch import ViewBatch
 from preshape.tracking import TrackedRun, UntrackedRun
-from preshape.training import TrainerSettings, predict, train
-
-SETTINGS = TrainerSettings(
-    LearningSettings(iterations=24, learning_rate=1e-2, schedule="steps", weight_decay=0.0, seed=0),
-    accelerator="cpu",
-    precision="32-true",
-    keep_best=True,
-)
-
-
-class TinyNetwork(SuccessModel):
-    """Mean colours and theta, one hidden layer and dropout: trains in milliseconds."""
-
-    def __init__(self) -> None:
-        super().__init__("tiny", "allegro_palm14", 14)
-        self.layers = nn.Sequential(nn.Linear(8 + 14, 16), nn.Tanh(), nn.Dropout(0.25), nn.Linear(16, 1))
-
-    def features(self, view: ViewBatch) -> Float[Tensor, "b 8"]:
-        return self.normalize_patch(view.patch[:, :, ::40, ::40]).mean(dim=(2, 3))
-
-    def raw_head(self, features: Float[Tensor, "f 8"], theta: Float[Tensor, "b 14"]) -> Float[Tensor, "b"]:
-        joint = torch.cat((features.expand(len(theta), -1), self.normalize_theta(theta)), dim=1)
-        return self.layers(joint).squeeze(1)
+from preshape.training import train
 
 
 @pytest.fixture(scope="module")
@@ -55,25 +30,9 @@ def data_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def make_data(folder: Path, validation_fraction: float) -> GraspDataModule:
-    return GraspDataModule(
-        folder=folder,
-        origin=ORIGIN,
-        space=allegro_space(),
-        views=ViewCache(folder / "cache", BoxRenderer()),
-        hold_out=HoldOut("scenes", fold=0, validation_fraction=validation_fraction, seed=0),
-        batches=BatchSettings(batch_size=4, min_positives=1, batches_per_epoch=6, seed=0),
-    )
-
-
 @pytest.fixture
 def data(data_folder: Path) -> GraspDataModule:
     return make_data(data_folder, validation_fraction=0.25)
-
-
-def make_network(seed: int = 0) -> TinyNetwork:
-    torch.manual_seed(seed)
-    return TinyNetwork()
 
 
 class CurvesInMemory(UntrackedRun):
@@ -117,6 +76,7 @@ def test_an_interrupted_training_ends_with_the_same_weights(data: GraspDataModul
     curves = CurvesInMemory()
     assert trained(data, disturbed, run=curves) == undisturbed
     assert 6 not in curves.steps
+    assert (disturbed / "curves.json").read_bytes() == (tmp_path / "undisturbed/curves.json").read_bytes()
     assert not list(disturbed.glob("*.ckpt"))
 
 
@@ -135,6 +95,7 @@ def test_the_best_weights_are_kept(data: GraspDataModule, tmp_path: Path) -> Non
         network = make_network()
         train(network, data, settings, tmp_path / str(keep_best), Losses())
         assert len(set(Losses.losses)) == 4
+        network.calibrate(logit_shift=0.0, temperature=1.0)
         probability = predict(network, data.val_dataloader())
         labels = data.validation.trials.lifted
         loss = -np.log(np.where(labels, probability, 1 - probability)).mean()
@@ -172,10 +133,12 @@ def test_every_file_comes_out_and_agrees(data: GraspDataModule, tmp_path: Path) 
     result = train(make_network(), data, SETTINGS, tmp_path, curves)
     names = {path.name for path in tmp_path.iterdir()}
     assert names == {
+        "curves.json",
         "metrics.json",
         "model.safetensors",
         "model.safetensors.json",
         "predictions.parquet",
+        "reliability.png",
         "roc.png",
     }
     assert set(curves.files) == names
@@ -184,11 +147,41 @@ def test_every_file_comes_out_and_agrees(data: GraspDataModule, tmp_path: Path) 
     assert metrics["n"] == len(predictions) == len(data.test) == result.metrics.n
     assert metrics["auc"]["value"] == pytest.approx(curves.values["test_auc"])
     assert {"train_loss", "val_loss", "val_auc", "learning_rate"} <= set(curves.values)
+    assert {"test_brier_low", "test_random_auc", "test_constant_brier", "test_f1_chosen"} <= set(
+        curves.values
+    )
+    assert set(metrics["baselines"]) == {"random", "constant"}
+    points = json.loads((tmp_path / "curves.json").read_text())["points"]
+    assert [point["iteration"] for point in points] == [6, 12, 18, 24]
     network = make_network(seed=5)
     sidecar = load_weights(result.weights, network)
     assert sidecar.data_hash == data.data_hash
     reloaded = predict(network, data.test_dataloader())
     assert np.array_equal(reloaded, predictions["success_prob"])
+
+
+def test_probabilities_are_calibrated_on_validation_trials(data: GraspDataModule, tmp_path: Path) -> None:
+    network = make_network()
+    train(network, data, replace(SETTINGS, prior_correction=True), tmp_path, UntrackedRun())
+    shift, temperature = network.logit_shift.item(), network.temperature.item()
+    assert shift < 0  # each batch has a lifted grasp
+    predictions = pd.read_parquet(tmp_path / "predictions.parquet")
+    calibrated = expit((predictions["raw_logit"] + shift) / temperature)
+    np.testing.assert_allclose(predictions["success_prob"], calibrated, rtol=1e-5)
+    network.calibrate(logit_shift=shift, temperature=1.0)
+    probability = predict(network, data.val_dataloader())
+    logits = np.log(probability / (1 - probability))
+    assert temperature == pytest.approx(fit_temperature(data.validation.trials.lifted, logits), rel=1e-3)
+
+
+def test_figures_do_not_depend_on_the_batch_size(data_folder: Path, tmp_path: Path) -> None:
+    network = make_network()
+    figures = []
+    for batch_size in (1, 7):
+        data = make_data(data_folder, 0.25, batch_size=batch_size)
+        data.setup()
+        figures.append(measure(network, data, tmp_path, seed=0).scalars())
+    assert figures[0] == pytest.approx(figures[1], rel=1e-5, nan_ok=True)
 
 
 def test_the_learning_rate_drops_after_each_third(data: GraspDataModule, tmp_path: Path) -> None:
