@@ -68,6 +68,10 @@ class Evaluator:
     recorder: RecorderSettings
 
 
+PLANNER_PARTS = ("method", "box", "constraint", "prior", "proposer")
+"""What a planner's configuration says of a `ViewPlanner`."""
+
+
 def build_evaluator(
     laboratory: Laboratory,
     planners: Mapping[str, Mapping[str, Any]],
@@ -79,7 +83,7 @@ def build_evaluator(
 
     Args:
         laboratory: scenes, views and trials.
-        planners: for each name the `method`, `box` and `constraint` of a planner (`conf/planner`).
+        planners: for each name the parts of a planner (`conf/planner`).
         model, weights: the network and its trained weights.
         recorder: how trials are filmed.
 
@@ -89,13 +93,11 @@ def build_evaluator(
     load_weights(weights, model)
     views = {
         name: ViewPlanner(
-            name,
-            parts["method"],
-            parts["box"],
-            laboratory.space,
-            laboratory.heuristic,
-            model,
-            parts["constraint"],
+            name=name,
+            space=laboratory.space,
+            heuristic=laboratory.heuristic,
+            model=model,
+            **{part: parts[part] for part in PLANNER_PARTS if part in parts},
         )
         for name, parts in planners.items()
     }

@@ -20,6 +20,8 @@ from preshape.planning.grasp_plan import GraspPlan
 from preshape.planning.hand_clearance import HandClearance
 from preshape.planning.objective import Objective, SuccessObjective, UnknownSuccess
 from preshape.planning.planner import Planner
+from preshape.planning.prior import PriorChoice
+from preshape.planning.regression import RegressedGrasp
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +36,8 @@ class ViewPlanner:
         heuristic, segmentation: how initial grasps are made.
         model: a trained network that predicts success; None if nothing is known about it.
         constraint: where the hand may not be; None for anywhere.
+        prior: what counts beside the success of a grasp.
+        proposer: says one grasp instead of the heuristic ones, if given.
     """
 
     name: str
@@ -43,6 +47,8 @@ class ViewPlanner:
     heuristic: HeuristicSettings
     model: GraspNetwork | None = None
     constraint: HandClearance | None = None
+    prior: PriorChoice = field(default_factory=PriorChoice)
+    proposer: RegressedGrasp | None = None
     segmentation: SegmentationSettings = field(default_factory=SegmentationSettings)
 
     def plan(self, observation: Observation, rng: np.random.Generator) -> GraspPlan:
@@ -63,14 +69,24 @@ class ViewPlanner:
         # As in the paper (section 4.3), and because the network has seen no other preshapes.
         space = self.space.narrowed(self.heuristic.joint_ranges)
         bounds = Bounds.around(theta, space, self.box)
-        objective = self._objective(observation, segmented)
+        view = self._view(observation, segmented)
+        if self.proposer is not None:
+            said = self.proposer.grasp(view)
+            nearest = int(np.linalg.norm(theta[:, :3] - said[:3], axis=1).argmin())
+            theta, bounds, initial = said[None], bounds[np.array([nearest])], [initial[nearest]]
+        objective = self.prior.joined_to(self._likelihood(view), self.space, segmented.T_camera_box)
         if self.constraint is not None:
             objective = ConstrainedObjective(objective, self.constraint.in_view(segmented))
         result = self.method.plan(objective, theta, bounds)
         faces = tuple(grasp.face for grasp in initial)
         return GraspPlan(self.name, self.space, faces, result, observation.camera.T_world_camera)
 
-    def _objective(self, observation: Observation, segmented: SegmentedObject) -> Objective:
+    @staticmethod
+    def _view(observation: Observation, segmented: SegmentedObject) -> ViewBatch:
+        view = object_view(observation, segmented)
+        return ViewBatch.of([view.cloud], [observation.camera], torch.from_numpy(view.channels)[None])
+
+    def _likelihood(self, view: ViewBatch) -> Objective:
         if self.model is None:
             return UnknownSuccess()
         if not isinstance(self.model, SuccessModel):
@@ -79,6 +95,4 @@ class ViewPlanner:
                 where="model",
                 fix="choose one that does, such as model=config_cnn",
             )
-        view = object_view(observation, segmented)
-        patch = torch.from_numpy(view.channels)[None]
-        return SuccessObjective(self.model, ViewBatch.of([view.cloud], [observation.camera], patch))
+        return SuccessObjective(self.model, view)

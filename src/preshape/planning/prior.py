@@ -1,0 +1,193 @@
+"""What good grasps look like before any network has looked: a prior over theta, for MAP planning."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import torch
+from jaxtyping import Float, Float64
+from sklearn.mixture import GaussianMixture
+from torch import Tensor
+
+from preshape.errors import InputError
+from preshape.files import read_json, write_json
+from preshape.geometry.pose import rotation_from_euler_xyz
+from preshape.grasps.space import GraspSpace
+from preshape.planning.objective import Evaluation, Objective
+
+FORMAT = "preshape-prior/1"
+"""Name and version of the file; raised whenever old files could be misread."""
+POSITION_M, DIRECTION, JOINT_RAD = 0.05, 0.3, 0.2
+"""Units in which a mixture sees the palm's position, its axes, and the preshape joints."""
+MIN_VARIANCE = 0.01
+"""Added to every variance of a mixture in these units, for joints that the heuristic does not move."""
+PARTS = ("log_weights", "means", "precisions")
+
+
+def in_box(theta: Float64[Tensor, "s d"], T_camera_box: Float64[Tensor, "#s 4 4"]) -> Float64[Tensor, "s e"]:
+    """Grasps as the object's bounding box sees them; differentiable in theta.
+
+    Theta's palm pose is in the camera frame, where grasps of the same kind differ with every place and turn
+    of the object. The palm's position is taken from the centre of the box, along its axes; its rotation as
+    the directions of its x and z axes, which, unlike angles, have no jumps.
+    """
+    rotation = T_camera_box[:, :3, :3]
+    position = (theta[:, None, :3] - T_camera_box[:, None, :3, 3]) @ rotation
+    axes = rotation.mT @ rotation_from_euler_xyz(theta[:, 3:6])
+    parts = (
+        position[:, 0] / POSITION_M,
+        axes[:, :, 0] / DIRECTION,
+        axes[:, :, 2] / DIRECTION,
+        theta[:, 6:] / JOINT_RAD,
+    )
+    return torch.cat(parts, dim=1)
+
+
+@dataclass(frozen=True, eq=False)
+class GraspPrior:
+    """A mixture of m normal distributions over grasps in the frame of the object's box.
+
+    Args:
+        grasp_space: name of the grasp space of theta.
+        log_weights: logarithms of the weights of the distributions.
+        means: their means, see `in_box`.
+        precisions: upper triangular U of each, U U^T being its inverse covariance.
+    """
+
+    grasp_space: str
+    log_weights: Float64[Tensor, "m"]
+    means: Float64[Tensor, "m e"]
+    precisions: Float64[Tensor, "m e e"]
+
+    @classmethod
+    def fitted(
+        cls,
+        theta: Float64[np.ndarray, "n d"],
+        T_camera_box: Float64[np.ndarray, "n 4 4"],
+        space: GraspSpace,
+        *,
+        components: int,
+        seed: int,
+    ) -> "GraspPrior":
+        """The mixture that fits given grasps best, each with the box of its own object.
+
+        Raises:
+            InputError: if there are fewer grasps than distributions.
+        """
+        if len(theta) < components:
+            raise InputError(
+                f"{len(theta)} grasps cannot make a mixture of {components} distributions",
+                where="components of the prior",
+                fix="choose fewer, or a larger data set",
+            )
+        features = in_box(torch.from_numpy(theta), torch.from_numpy(T_camera_box)).numpy()
+        mixture = GaussianMixture(components, reg_covar=MIN_VARIANCE, random_state=seed).fit(features)
+        parts = (np.log(mixture.weights_), mixture.means_, mixture.precisions_cholesky_)
+        return cls(space.name, *(torch.from_numpy(part) for part in parts))
+
+    def log_density(
+        self, theta: Float64[Tensor, "s d"], T_camera_box: Float64[Tensor, "4 4"]
+    ) -> Float64[Tensor, "s"]:
+        """Log density of grasps around a box, up to a constant; differentiable."""
+        offsets = in_box(theta, T_camera_box[None])[:, None] - self.means
+        whitened = (offsets[:, :, None] @ self.precisions)[:, :, 0]
+        log_volume = self.precisions.diagonal(dim1=1, dim2=2).log().sum(dim=1)
+        return torch.logsumexp(self.log_weights + log_volume - whitened.square().sum(dim=2) / 2, dim=1)
+
+    def write(self, path: str | Path) -> None:
+        """Write the prior as JSON, atomically.
+
+        Raises:
+            InputError: if the place cannot be written to.
+        """
+        parts = {name: getattr(self, name).numpy() for name in PARTS}
+        write_json(path, {"format": FORMAT, "grasp_space": self.grasp_space} | parts)
+
+    @classmethod
+    def read(cls, path: str | Path) -> "GraspPrior":
+        """Read a prior.
+
+        Raises:
+            InputError: if the file is missing, damaged, or no prior of this version.
+        """
+        content = read_json(path)
+        again = "fit it again with `python src/fit_prior.py`"
+        if content.get("format") != FORMAT:
+            raise InputError(f"The file is no prior in the format {FORMAT}", where=path, fix=again)
+        try:
+            parts = [torch.tensor(content[name], dtype=torch.float64) for name in PARTS]
+            size = parts[1].shape[1]
+            shapes = ((len(parts[0]),), (len(parts[0]), size), (len(parts[0]), size, size))
+            if tuple(tuple(part.shape) for part in parts) != shapes:
+                raise ValueError("its parts do not fit together")
+            return cls(str(content["grasp_space"]), *parts)
+        except (KeyError, TypeError, ValueError, IndexError) as error:
+            raise InputError(
+                f"The prior is incomplete or damaged ({error})", where=path, fix=again
+            ) from error
+
+
+@dataclass(frozen=True)
+class PriorChoice:
+    """Which prior a planner takes, and how much it counts.
+
+    Args:
+        file: what `python src/fit_prior.py` wrote; None for the paper's uniform prior.
+        weight: of the log prior against the log probability of success; 0 for the paper's maximum likelihood.
+
+    Raises:
+        InputError: if the weight is not 0 and there is no file.
+    """
+
+    file: str | None = None
+    weight: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.weight and self.file is None:
+            raise InputError(
+                "A prior has a weight, but no file",
+                where="prior.file",
+                fix="fit one with `python src/fit_prior.py`, or set prior.weight=0",
+            )
+
+    def joined_to(self, objective: Objective, space: GraspSpace, T_camera_box: np.ndarray) -> Objective:
+        """The objective with the prior of grasps around a box beside it.
+
+        Raises:
+            InputError: if the prior cannot be read, or is for another grasp space.
+        """
+        if self.file is None or not self.weight:
+            return objective
+        prior = GraspPrior.read(self.file)
+        if prior.grasp_space != space.name:
+            raise InputError(
+                f"The prior is for grasp space {prior.grasp_space!r}, not for {space.name!r}",
+                where=self.file,
+                fix="choose the robot whose grasps it was fitted to",
+            )
+        return PriorObjective(objective, prior, T_camera_box, self.weight)
+
+
+class PriorObjective(Objective):
+    """An objective with a prior over theta beside it: what MAP planning climbs (paper, section 2).
+
+    Args:
+        objective: gives the probability of success.
+        prior: the prior.
+        T_camera_box: pose of the object's bounding box.
+        weight: of the log prior.
+    """
+
+    def __init__(
+        self,
+        objective: Objective,
+        prior: GraspPrior,
+        T_camera_box: Float[np.ndarray, "4 4"],
+        weight: float,
+    ) -> None:
+        self._objective, self._prior, self._weight = objective, prior, weight
+        self._box = torch.from_numpy(T_camera_box)
+
+    def evaluate(self, theta: Float64[Tensor, "s d"]) -> Evaluation:
+        evaluation = self._objective.evaluate(theta)
+        return replace(evaluation, log_prior=self._weight * self._prior.log_density(theta, self._box))
