@@ -1,6 +1,6 @@
 """The report of all trainings: result file, charts, and the section of the results page."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -28,6 +28,7 @@ class LearningReport:
             `regression`.
         default: group of the default model.
         ablations: tables by their headings; each has groups by what is written beside them.
+        calibrated: groups whose probabilities are shown before and after temperature scaling.
         learning_curves: sweeps over the number of trials by what is written beside them: the group with all
             trials, and the beginning of the names of the groups with fewer.
         output: the result file.
@@ -39,6 +40,7 @@ class LearningReport:
     paper: Mapping[str, str]
     default: str
     ablations: Mapping[str, Mapping[str, str]]
+    calibrated: Sequence[str]
     learning_curves: Mapping[str, Mapping[str, str]]
     output: str
     page: str
@@ -62,6 +64,8 @@ class LearningReport:
             *self._classification(runs),
             *self._regression(runs),
             *self._ablations(runs),
+            ["### Temperature scaling"],
+            tables.calibration_lines(runs, self.calibrated),
             *self._learning_curves(runs),
         ]
         text = "\n".join(line for part in parts for line in (*part, ""))

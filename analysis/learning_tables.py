@@ -18,6 +18,7 @@ PAPER_RANDOM = ("0.5", "0.172 (0.02)")
 NOT_RUN = "*not run*"
 NUMBERS = (150, 500, 1500, 5000)
 """Numbers of trials of the learning curves, besides all."""
+WHEN = ("before", "after")
 METRICS = {"auc": "AUC", "ap": "AP", "brier": "Brier", "ece": "ECE", "accuracy": "accuracy", "f1": "F1"}
 
 
@@ -128,6 +129,25 @@ def comparison_lines(runs: Runs, groups: Mapping[str, str]) -> list[str]:
             missing = [NOT_RUN, *[""] * (len(metrics) - 1)]
             cells += missing if figures is None else [_spread(figures[name]) for name in metrics]
         rows.append(cells)
+    return _table(header, rows)
+
+
+def calibration_lines(runs: Runs, groups: Sequence[str]) -> list[str]:
+    """Probabilities before and after temperature scaling on validation trials.
+
+    Args:
+        runs: the sweeps.
+        groups: groups of networks that predict success.
+    """
+    header = ["", "split", "temperature", *(f"{name}, {when}" for name in ("Brier", "ECE") for when in WHEN)]
+    rows = []
+    for group in groups:
+        for split in SPLITS:
+            run = runs.get((group, split))
+            figures = {} if run is None else run.figures()
+            names = ("temperature", "brier_before_calibration", "brier", "ece_before_calibration", "ece")
+            cells = [_spread(figures[name]) for name in names if name in figures]
+            rows.append([group, split, *(cells or [NOT_RUN, *[""] * 4])])
     return _table(header, rows)
 
 

@@ -43,6 +43,7 @@ def report(folder: Path) -> LearningReport:
         paper={"config_cnn": "paper", "patches_cnn": "patches", "regression": "regression"},
         default="best",
         ablations={"Patches": {"fixed": "paper", "moving": "moving"}},
+        calibrated=["paper"],
         learning_curves={"config-CNN": {"all": "paper", "fewer": "curve"}},
         output=str(folder / "cross_validation.json"),
         page=str(folder / "results.md"),
