@@ -1,6 +1,7 @@
 """The space that a hand takes up, as spheres that move with theta."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -48,7 +49,11 @@ class HandVolume:
         counts = [len(found) for _, found in deep]
         self._palm = palm[:, :3]
         self._local = np.concatenate([found[:, :3] for _, found in deep])
-        self._matrices = np.repeat(np.array([part.matrices for part, _ in deep]), counts, axis=0)
+        matrices = np.repeat(np.array([part.matrices for part, _ in deep]), counts, axis=0)
+        levels = (len(matrices), depth)
+        self._columns: Float[np.ndarray, "n l 9 3"] = matrices.reshape(*levels, 9, 3)
+        # The same for the way back: of each of the three products the transpose.
+        self._stacked: Float[np.ndarray, "n l 3 9"] = matrices.transpose(0, 1, 3, 2, 4).reshape(*levels, 3, 9)
         self._shifts = np.repeat(np.array([part.shifts for part, _ in deep]), counts, axis=0)
         self._index: Int[np.ndarray, "n l"] = np.repeat([part.index for part, _ in deep], counts, axis=0)
         self.radii = np.concatenate((palm[:, 3], *(found[:, 3] for _, found in deep)))
@@ -83,47 +88,52 @@ class HandVolume:
 
     def in_palm(self, theta: Float64[np.ndarray, "s d"]) -> Float64[np.ndarray, "s k 3"]:
         """Centres of the k spheres in theta's palm frame (m), which depend on the joints alone."""
-        return self._turned(theta)[0]
+        points, _ = self._turned(theta)
+        palm = np.broadcast_to(self._palm, (len(theta), *self._palm.shape))
+        return np.concatenate((palm, points.transpose(2, 0, 1)), axis=1)
 
     def joint_gradient(
         self, theta: Float64[np.ndarray, "s d"], gradient: Float64[np.ndarray, "s k 3"]
     ) -> Float64[np.ndarray, "s d"]:
         """Gradient by the joints of a function whose gradient by the centres in the palm frame is given."""
-        _, turned, sines, versines = self._turned(theta)
-        total = np.zeros((len(theta), self._dim + 1))
-        flowing = gradient[:, len(self._palm) :]
-        for level, products in enumerate(turned):
-            sine, versine = sines[:, :, level, None], versines[:, :, level, None]
-            slope = (1 - versine) * products[:, :, 1] + sine * products[:, :, 2]
-            by_angle = (flowing * slope).sum(axis=2)
-            for column in np.unique(self._index[:, level]):
-                total[:, column] += by_angle[:, self._index[:, level] == column].sum(axis=1)
-            back = np.einsum("ncij,sni->sncj", self._matrices[:, level], flowing)
-            flowing = back[:, :, 0] + sine * back[:, :, 1] + versine * back[:, :, 2]
-        return total[:, : self._dim]
+        _, turns = self._turned(theta)
+        total = np.zeros((self._dim + 1, len(theta)))
+        flowing = np.ascontiguousarray(gradient[:, len(self._palm) :].transpose(1, 2, 0))
+        for level, turn in enumerate(turns):
+            by_angle = (flowing * turn.slope).sum(axis=1)
+            np.add.at(total, self._index[:, level], by_angle)
+            back = (self._stacked[:, level].swapaxes(1, 2) @ flowing).reshape(-1, 3, 3, len(theta))
+            flowing = back[:, 0] + turn.sine * back[:, 1] + turn.versine * back[:, 2]
+        return total[: self._dim].T.copy()
 
     def _turned(
         self, theta: Float64[np.ndarray, "s d"]
-    ) -> tuple[
-        Float64[np.ndarray, "s k 3"],
-        list[Float64[np.ndarray, "s n 3 3"]],
-        Float64[np.ndarray, "s n l"],
-        Float64[np.ndarray, "s n l"],
-    ]:
-        """Centres, and for each level of joints, the innermost last, what the turns are made of."""
-        angles = np.concatenate((theta, np.zeros((len(theta), 1))), axis=1)
-        sines, versines = np.sin(angles)[:, self._index], (1 - np.cos(angles))[:, self._index]
-        points = np.broadcast_to(self._local, (len(theta), *self._local.shape))
-        turned: list[Float64[np.ndarray, "s n 3 3"]] = []
+    ) -> tuple[Float64[np.ndarray, "n 3 s"], list["_Turn"]]:
+        """Centres on the fingers, and the turns that brought them there, the one next to the palm first.
+
+        The starts come last, so that a product takes them all at once.
+        """
+        angles = np.concatenate((theta.T, np.zeros((1, len(theta)))))
+        sines, cosines = np.sin(angles)[self._index], np.cos(angles)[self._index]
+        points = np.broadcast_to(self._local[..., None], (*self._local.shape, len(theta)))
+        turns: list[_Turn] = []
         for level in reversed(range(self._index.shape[1])):
+            sine, cosine = sines[:, level, None], cosines[:, level, None]
             # Rodrigues: a turn by q is 1 + sin q K + (1 - cos q) K^2, with K p = axis x p.
-            products = np.einsum("ncij,snj->snci", self._matrices[:, level], points)
-            sine, versine = sines[:, :, level, None], versines[:, :, level, None]
-            points = products[:, :, 0] + sine * products[:, :, 1] + versine * products[:, :, 2]
-            points = points + self._shifts[:, level]
-            turned.insert(0, products)
-        palm = np.broadcast_to(self._palm, (len(theta), *self._palm.shape))
-        return np.concatenate((palm, points), axis=1), turned, sines, versines
+            products = (self._columns[:, level] @ points).reshape(-1, 3, 3, len(theta))
+            turns.insert(0, _Turn(sine, 1 - cosine, cosine * products[:, 1] + sine * products[:, 2]))
+            points = products[:, 0] + sine * products[:, 1] + (1 - cosine) * products[:, 2]
+            points += self._shifts[:, level, :, None]
+        return points, turns
+
+
+@dataclass(frozen=True, eq=False)
+class _Turn:
+    """A joint of each sphere's chain: sine and 1 - cosine of its angle, and how that moves the sphere."""
+
+    sine: Float64[np.ndarray, "n 1 s"]
+    versine: Float64[np.ndarray, "n 1 s"]
+    slope: Float64[np.ndarray, "n 3 s"]
 
 
 class _Chain:

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import partial
 
 import numpy as np
 from jaxtyping import Float64
@@ -12,6 +11,9 @@ from preshape.hands.volume import HandVolume
 from preshape.perception.segmentation import SegmentedObject
 from preshape.planning.constraint import Slack
 from preshape.planning.object_solid import ObjectSolid, SolidSettings
+
+FAR_M = 0.01
+"""More slack from the object than this counts as this."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +77,7 @@ class ViewClearance:
                 hand_radii + demands.pregrasp_m,
             )
         )
+        self._enough = self._demanded[2 * len(radii) :] + FAR_M
         halves = np.arange(2 * len(radii)).reshape(2, -1)
         self._own = halves[:, len(wrist) :].ravel()
 
@@ -82,9 +85,11 @@ class ViewClearance:
         """Height of every sphere at the grasp and before the approach, then distances from the object."""
         placed = self._placed(theta)
         height = placed.camera @ self._plane[:3] + self._plane[3]
-        distance = self._solid.distance(placed.camera[:, self._own])
+        distance = self._solid.distance(placed.camera[:, self._own], self._enough)
         values = np.concatenate((height, distance), axis=1) - self._demanded
-        return Slack(values, partial(self._pull_back, theta, placed))
+        counting = np.ones(values.shape, dtype=bool)
+        counting[:, height.shape[1] :] = distance < self._enough
+        return Slack(values, lambda weights: self._pull_back(theta, placed, weights * counting))
 
     def _placed(self, theta: Float64[np.ndarray, "s d"]) -> _Placed:
         rotation = Rotation.from_euler("xyz", theta[:, 3:6]).as_matrix()

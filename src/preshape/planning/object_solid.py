@@ -37,59 +37,61 @@ class ObjectSolid:
     def __init__(self, segmented: SegmentedObject, settings: SolidSettings) -> None:
         T_box_camera = invert_pose(segmented.T_camera_box)
         filled = _columns(transform_points(T_box_camera, segmented.points), segmented.extents, settings)
-        self._field = _signed_distance(filled, settings.voxel_m)
-        self._cells = np.array(filled.shape)
+        self._field = _signed_distance(filled, settings.voxel_m).ravel()
+        self._voxel_m = settings.voxel_m
+        self._top = np.array(filled.shape) - 1.0
+        self._last = np.array(filled.shape) - 2
         # The voxels stand on the table and are centred on the box.
-        low = -settings.voxel_m * (self._cells - 1) / 2
+        low = -settings.voxel_m * self._top / 2
         low[2] = settings.voxel_m / 2 - segmented.extents[2] / 2
         self._rotation = T_box_camera[:3, :3] / settings.voxel_m
         self._shift = (T_box_camera[:3, 3] - low) / settings.voxel_m
         corners = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij"), axis=-1).reshape(8, 3)
-        self._strides = np.array([self._cells[1] * self._cells[2], self._cells[2], 1])
+        self._strides = np.array([filled.shape[1] * filled.shape[2], filled.shape[2], 1])
         self._corners = corners @ self._strides
 
-    def distance(self, points: Float64[np.ndarray, "*b 3"]) -> Float64[np.ndarray, "*b"]:
-        """Signed distance (m) of points in the camera frame, negative inside.
+    def distance(
+        self, points: Float64[np.ndarray, "s k 3"], enough_m: Float64[np.ndarray, "k"]
+    ) -> Float64[np.ndarray, "s k"]:
+        """Signed distance (m) of points in the camera frame, negative inside, up to what is enough.
 
-        Far away it is that of the nearest place where it is known.
+        Args:
+            points: the points.
+            enough_m: distances beyond count as this; for most points the nearest voxel tells so already.
         """
-        values, part = self._corner_values(points)
+        place = np.clip(points @ self._rotation.T + self._shift, 0.0, self._top)
+        at_voxel = self._field[np.rint(place).astype(np.intp) @ self._strides]
+        # To the nearest voxel it is at most half the diagonal of one.
+        near = at_voxel < enough_m + np.sqrt(3) / 2 * self._voxel_m
+        place = place[near]
+        first = np.minimum(place.astype(np.intp), self._last)
+        values = self._field[(first @ self._strides)[:, None] + self._corners]
+        part = place - first
         for axis in range(3):
-            half = values.shape[-1] // 2
-            values = values[..., :half] + part[..., axis, None] * (values[..., half:] - values[..., :half])
-        return values[..., 0]
+            half = values.shape[1] // 2
+            values = values[:, :half] + part[:, axis, None] * (values[:, half:] - values[:, :half])
+        found = np.broadcast_to(enough_m, near.shape).copy()
+        found[near] = np.minimum(values[:, 0], found[near])
+        return found
 
-    def gradient(self, points: Float64[np.ndarray, "*b 3"]) -> Float64[np.ndarray, "*b 3"]:
+    def gradient(self, points: Float64[np.ndarray, "n 3"]) -> Float64[np.ndarray, "n 3"]:
         """Gradient of the distance, in the camera frame; zero along axes on which a point is far away."""
-        values, part = self._corner_values(points)
-        cube = values.reshape(*values.shape[:-1], 2, 2, 2)
-        low, high = 1 - part, part
-        weights = np.stack((low, high), axis=-1)
-        x, y, z = (weights[..., axis, :] for axis in range(3))
+        free = points @ self._rotation.T + self._shift
+        place = np.clip(free, 0.0, self._top)
+        first = np.minimum(place.astype(np.intp), self._last)
+        cube = self._field[(first @ self._strides)[:, None] + self._corners].reshape(-1, 2, 2, 2)
+        x, y, z = np.stack((1 - (place - first), place - first)).transpose(2, 1, 0)
         slope = np.array([-1.0, 1.0])
         by_cell = np.stack(
             (
-                np.einsum("...ijk,i,...j,...k->...", cube, slope, y, z),
-                np.einsum("...ijk,...i,j,...k->...", cube, x, slope, z),
-                np.einsum("...ijk,...i,...j,k->...", cube, x, y, slope),
+                np.einsum("nijk,i,nj,nk->n", cube, slope, y, z),
+                np.einsum("nijk,ni,j,nk->n", cube, x, slope, z),
+                np.einsum("nijk,ni,nj,k->n", cube, x, y, slope),
             ),
-            axis=-1,
+            axis=1,
         )
-        place = points @ self._rotation.T + self._shift
-        known = (place > 0) & (place < self._cells - 1)
-        gradient: Float64[np.ndarray, "*b 3"] = (by_cell * known) @ self._rotation
+        gradient: Float64[np.ndarray, "n 3"] = (by_cell * (free == place)) @ self._rotation
         return gradient
-
-    def _corner_values(
-        self, points: Float64[np.ndarray, "*b 3"]
-    ) -> tuple[Float64[np.ndarray, "*b 8"], Float64[np.ndarray, "*b 3"]]:
-        """Distances at the 8 voxels around points, and where between them each point lies, from 0 to 1."""
-        place = np.clip(points @ self._rotation.T + self._shift, 0.0, self._cells - 1.0)
-        first = np.minimum(place.astype(int), self._cells - 2)
-        values: Float64[np.ndarray, "*b 8"] = self._field.ravel()[
-            (first @ self._strides)[..., None] + self._corners
-        ]
-        return values, place - first
 
 
 def _columns(
