@@ -2,8 +2,8 @@
 
 import statistics
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from torch.utils.flop_counter import FlopCounterMode
@@ -19,6 +19,7 @@ class Comparison:
         ours_s, peer_s: median seconds of one run.
         bound_s: seconds below which ours cannot come.
         runs: how often each was run.
+        details: further figures that the row has.
     """
 
     name: str
@@ -27,6 +28,7 @@ class Comparison:
     peer_s: float
     bound_s: float
     runs: int
+    details: Mapping[str, Any] = field(default_factory=dict)
 
     def __str__(self) -> str:
         return (
@@ -75,4 +77,5 @@ def as_row(comparison: Comparison) -> dict[str, Any]:
         "ratio": comparison.peer_s / comparison.ours_s,
         "bound_share": comparison.bound_s / comparison.ours_s,
         "runs": comparison.runs,
+        **comparison.details,
     }

@@ -7,7 +7,7 @@ from pathlib import Path
 from collection_speed import collection
 from comparison import as_row
 from machine import describe_machine, matrix_product_rate
-from planning_speed import features_once
+from planning_speed import planning_comparisons
 from rendering_speed import rendering
 from training_speed import channels_last_training
 
@@ -28,7 +28,7 @@ def main() -> None:
     rate = matrix_product_rate()
     log.info("Matrix products: %.1f GFLOP/s", rate / 1e9)
     rows = []
-    for compare in (features_once, channels_last_training, collection, rendering):
+    for compare in (*planning_comparisons(), channels_last_training, collection, rendering):
         log.info("%s", comparison := compare(SEED, rate))
         rows.append(as_row(comparison))
     machine = describe_machine() | {"matrix_product_gflop_per_s": rate / 1e9}

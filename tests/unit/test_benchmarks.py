@@ -23,6 +23,7 @@ def test_rows_have_the_agreed_keys(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(machine, "SIZE", 64)
     monkeypatch.setattr(planning_speed, "ITERATIONS", 1)
     monkeypatch.setattr(planning_speed, "RUNS", 1)
+    monkeypatch.setattr(planning_speed, "STARTS", (3,))
     monkeypatch.setattr(rendering_speed, "SCENES", 2)
     monkeypatch.setattr(training_speed, "BATCH", 2)
     monkeypatch.setattr(training_speed, "RUNS", 1)
