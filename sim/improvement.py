@@ -9,6 +9,7 @@ import torch
 from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf, open_dict
 
+from preshape.data.joined_tables import joined
 from preshape.data.tables import data_hash, read_data_set, write_data_set
 from preshape.files import read_json, write_json
 from preshape.provenance import provenance
@@ -17,7 +18,6 @@ from preshape.training import WEIGHTS_FILE, train
 from sim.configured_evaluation import run_evaluation
 from sim.evaluation_summary import PlannerSummary
 from sim.fingerprint import code_of
-from sim.joined_tables import joined
 
 log = logging.getLogger(__name__)
 

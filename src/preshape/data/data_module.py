@@ -1,6 +1,8 @@
 """From a folder of labelled grasps to the batches of a network."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import reduce
 from pathlib import Path
 
 import lightning
@@ -11,8 +13,9 @@ from torch.utils.data import DataLoader, Sampler
 from preshape.data.batches import InOrder, PositiveBatches
 from preshape.data.folds import HoldOut, split_trials
 from preshape.data.grasp_dataset import GraspBatch, GraspDataset
+from preshape.data.joined_tables import joined
 from preshape.data.tables import data_hash, read_data_set
-from preshape.data.trial_table import TableOrigin, TrialTable
+from preshape.data.trial_table import SceneTable, TableOrigin, TrialTable
 from preshape.data.view_cache import ViewCache
 from preshape.errors import InputError
 from preshape.grasps.space import GraspSpace
@@ -45,6 +48,7 @@ class GraspDataModule(lightning.LightningDataModule):
         views: makes and keeps the views of the scenes.
         hold_out: which trials are held out.
         batches: how the others are drawn.
+        added: folders of further data sets, which are put behind the first.
         trials: how many executed trials are used, from the first of the table on; None for all.
         trials_learned: learn as if so many were used: of the trials for training and for validation random
             ones are left out, the test trials stay; None for none. A smaller number keeps some of a larger's.
@@ -64,11 +68,13 @@ class GraspDataModule(lightning.LightningDataModule):
         views: ViewCache,
         hold_out: HoldOut,
         batches: BatchSettings,
+        added: Sequence[str | Path] = (),
         trials: int | None = None,
         trials_learned: int | None = None,
     ) -> None:
         super().__init__()
-        self._folder, self._origin, self._space = Path(folder), origin, space
+        self._folders = tuple(Path(one) for one in (folder, *added))
+        self._origin, self._space = origin, space
         self._views = views
         self._hold_out, self.batches, self._wanted = hold_out, batches, trials
         self._learned = trials_learned
@@ -81,14 +87,7 @@ class GraspDataModule(lightning.LightningDataModule):
         """
         if hasattr(self, "data_hash"):
             return
-        scenes, trials = read_data_set(self._folder, self._space)
-        if trials.origin != self._origin:
-            raise InputError(
-                f"The trials were collected with {_choices(trials.origin)}, "
-                f"but the configuration chose {_choices(self._origin)}",
-                where=self._folder,
-                fix=f"choose {_choices(trials.origin)}, or another dataset",
-            )
+        scenes, trials = reduce(joined, map(self._read, self._folders))
         executed = self._first(trials.executed)
         split = split_trials(executed, self._hold_out)
         self._views.fill([scenes.by_id[scene_id] for scene_id in np.unique(executed.scene_ids).tolist()])
@@ -99,7 +98,18 @@ class GraspDataModule(lightning.LightningDataModule):
 
         learned = (self._thinned(rows, len(executed)) for rows in (split.train, split.validation))
         self.train, self.validation, self.test = (part(rows) for rows in (*learned, split.test))
-        self.data_hash = data_hash(self._folder)
+        self.data_hash = data_hash(*self._folders)
+
+    def _read(self, folder: Path) -> tuple[SceneTable, TrialTable]:
+        scenes, trials = read_data_set(folder, self._space)
+        if trials.origin != self._origin:
+            raise InputError(
+                f"The trials were collected with {_choices(trials.origin)}, "
+                f"but the configuration chose {_choices(self._origin)}",
+                where=folder,
+                fix=f"choose {_choices(trials.origin)}, or another dataset",
+            )
+        return scenes, trials
 
     def _thinned(self, rows: Int[np.ndarray, "rows"], executed: int) -> Int[np.ndarray, "kept"]:
         """The rows that are kept if fewer trials than were executed are to be learned from."""
@@ -120,7 +130,7 @@ class GraspDataModule(lightning.LightningDataModule):
         if not 0 < wanted <= executed:
             raise InputError(
                 f"{wanted} trials are wanted, but the table has {executed} executed ones",
-                where=self._folder,
+                where=", ".join(map(str, self._folders)),
                 fix=f"set dataset.data.{setting} to at most as many, or to null for all",
             )
 
@@ -136,7 +146,7 @@ class GraspDataModule(lightning.LightningDataModule):
         if not len(self.train) or not len(self.test):
             raise InputError(
                 "No grasp lifted its object among those to learn from, or among those to test with",
-                where=self._folder,
+                where=", ".join(map(str, self._folders)),
                 fix="collect more trials with `python sim/collect.py`",
             )
 

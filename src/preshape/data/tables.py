@@ -160,11 +160,12 @@ def write_data_set(folder: str | Path, scenes: SceneTable, trials: TrialTable) -
     write_trials(Path(folder) / TRIALS_FILE, trials)
 
 
-def data_hash(folder: str | Path) -> str:
-    """Digest of the two files of a data set, by which a trained network names its data."""
+def data_hash(*folders: str | Path) -> str:
+    """Digest of the two files of each data set, by which a trained network names its data."""
     digest = hashlib.sha256()
-    for name in (SCENES_FILE, TRIALS_FILE):
-        digest.update(hashlib.sha256((Path(folder) / name).read_bytes()).digest())
+    for folder in folders:
+        for name in (SCENES_FILE, TRIALS_FILE):
+            digest.update(hashlib.sha256((Path(folder) / name).read_bytes()).digest())
     return digest.hexdigest()
 
 

@@ -24,7 +24,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def make_module(folder: Path, origin: TableOrigin = ORIGIN, trials: int | None = None) -> GraspDataModule:
+def make_module(
+    folder: Path, origin: TableOrigin = ORIGIN, trials: int | None = None, added: tuple[Path, ...] = ()
+) -> GraspDataModule:
     return GraspDataModule(
         folder=folder,
         origin=origin,
@@ -32,6 +34,7 @@ def make_module(folder: Path, origin: TableOrigin = ORIGIN, trials: int | None =
         views=ViewCache(folder / "cache", BoxRenderer()),
         hold_out=HoldOut("scenes", fold=0, validation_fraction=0.25, seed=0),
         batches=BatchSettings(batch_size=4, min_positives=1, batches_per_epoch=5, seed=0),
+        added=added,
         trials=trials,
     )
 
@@ -86,6 +89,21 @@ def test_points_of_the_camera_frame_are_found_in_the_patch(folder: Path) -> None
         fx, fy, cx, cy = numbers.tolist()
         seen = patch[:3, round(fy * y / depth + cy), round(fx * x / depth + cx)]
         assert seen.tolist() == pytest.approx([200 / 255, 40 / 255, 40 / 255], abs=1e-3)
+
+
+def test_further_data_sets_are_put_behind_the_first(folder: Path, tmp_path: Path) -> None:
+    write_data_set(tmp_path, 4)
+    both, first = make_module(folder, added=(tmp_path,)), make_module(folder)
+    both.setup()
+    first.setup()
+    parts = (both.train, both.validation, both.test)
+    executed = [
+        read_trials(place / "trials.parquet", allegro_space()).executed for place in (folder, tmp_path)
+    ]
+    assert sum(map(len, parts)) == sum(map(len, executed))
+    assert len({trial for part in parts for trial in part.trials.rows["trial_id"]}) == sum(map(len, parts))
+    assert both.data_hash != first.data_hash
+    assert len(next(iter(both.test_dataloader())).label)
 
 
 def test_views_may_come_without_patches(folder: Path) -> None:

@@ -5,11 +5,11 @@ import pytest
 import torch
 from synthetic_scenes import ORIGIN, allegro_space, make_scene, make_trial
 
+from preshape.data.joined_tables import DataSet, joined
 from preshape.data.trial_table import SceneTable, TrialTable
 from preshape.planning.bounds import Bounds
 from preshape.planning.objective import Evaluation, Objective
 from sim.acquisition import RandomAcquisition, Wanted
-from sim.joined_tables import DataSet, joined
 
 INITIAL = np.array([[0.0, 0.0], [2.0, 2.0]])
 BOUNDS = Bounds(INITIAL - 1, INITIAL + 1)
