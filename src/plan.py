@@ -1,14 +1,12 @@
 """Plan grasps for a saved RGB-D view: `python src/plan.py view=DIR weights=FILE.safetensors`."""
 
 import logging
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
-from preshape.checkpoints import load_weights
 from preshape.drawing.picture_files import save_picture
 from preshape.drawing.plan_picture import plan_picture
 from preshape.entry_point import entry_point
@@ -23,9 +21,7 @@ def main(cfg: DictConfig) -> None:
     """Find the object, make heuristic grasps, plan, and write the grasps as JSON and as a picture."""
     planner = instantiate(cfg.view_planner)
     if cfg.weights is not None:
-        model = instantiate(cfg.model)
-        load_weights(cfg.weights, model)
-        planner = replace(planner, model=model)
+        planner = planner.with_network(instantiate(cfg.model), cfg.weights)
     observation = load_chosen_view(cfg.view, cfg.rgb_file, cfg.depth_file, cfg.camera_file)
     plan = planner.plan(observation, np.random.default_rng(cfg.seed))
     picture = plan_picture(observation, plan, instantiate(cfg.robot.hand))

@@ -6,12 +6,14 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 import torch
 from PIL import Image
 from synthetic_scenes import BoxRenderer, make_scene
 
 from preshape.checkpoints import save_weights
+from preshape.configured_planner import plan_view
 from preshape.models.palm_points import PalmPoints
 from preshape.perception.view_files import save_view
 
@@ -70,6 +72,15 @@ def test_heuristic_needs_no_weights_and_single_files_will_do(plan: Command, tmp_
     assert done.returncode == 0, done.stderr
     content = json.loads((tmp_path / "out" / "grasps.json").read_text())
     assert [grasp["success_prob"] for grasp in content["grasps"]] == [None] * 3
+
+
+def test_three_lines_of_python_plan_the_same(plan: Command, folder: Path, tmp_path: Path) -> None:
+    assert plan("view=view", "planner=heuristic").returncode == 0
+    content = json.loads((tmp_path / "out" / "grasps.json").read_text())
+    again = plan_view(folder / "view", None, "planner=heuristic")
+    for grasp in content["grasps"]:
+        np.testing.assert_array_equal(again.result.theta[grasp["start"]], grasp["theta"])
+        np.testing.assert_allclose(again.palm_pose_over_table(grasp["start"]), grasp["T_table_palm"])
 
 
 def test_a_truncated_view_is_refused(plan: Command, folder: Path, tmp_path: Path) -> None:

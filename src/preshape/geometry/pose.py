@@ -47,6 +47,17 @@ def transform_points(
     return moved
 
 
+def pose_over_plane(plane: Float[np.ndarray, "4"]) -> Float[np.ndarray, "4 4"]:
+    """T_plane_camera for a plane (a, b, c, d) in the camera frame, with n . p + d the height of p over it.
+
+    The plane's frame has z along its normal, its origin under the camera, and x along the image's right.
+    """
+    x = np.array([1.0, 0.0, 0.0]) - plane[0] * plane[:3]
+    x /= np.linalg.norm(x)
+    axes = np.stack((x, np.cross(plane[:3], x), plane[:3]))
+    return make_pose(axes, np.array([0.0, 0.0, plane[3]]))
+
+
 def pose_from_quaternion(
     position: Float[np.ndarray, "3"], wxyz: Float[np.ndarray, "4"]
 ) -> Float[np.ndarray, "4 4"]:

@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float, Int
 from scipy.spatial import ConvexHull
 
 from preshape.errors import InputError
-from preshape.geometry.pose import make_pose
+from preshape.geometry.pose import pose_over_plane
 from preshape.perception.point_cloud import largest_cluster
 
 
@@ -179,8 +179,4 @@ def camera_pose_over_table(points: Float[np.ndarray, "h w 3"]) -> Float[np.ndarr
     """
     # Whether the camera looks level or straight down, the table's normal is within 45 degrees of this.
     up = np.array([0.0, -1.0, -1.0]) / np.sqrt(2)
-    plane = find_table(points, up, TableSettings(max_tilt_rad=np.radians(55))).plane
-    x = np.array([1.0, 0.0, 0.0]) - plane[0] * plane[:3]
-    x /= np.linalg.norm(x)
-    axes = np.stack((x, np.cross(plane[:3], x), plane[:3]))
-    return make_pose(axes, np.array([0.0, 0.0, plane[3]]))
+    return pose_over_plane(find_table(points, up, TableSettings(max_tilt_rad=np.radians(55))).plane)

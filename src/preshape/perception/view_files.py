@@ -41,7 +41,8 @@ def load_view(rgb: str | Path, depth: str | Path, camera: str | Path) -> Observa
 
     Args:
         rgb: colour image, PNG or JPEG.
-        depth: 16-bit grey PNG; 0 where the sensor saw nothing. Its unit is the camera file's `depth_scale_m`.
+        depth: 16-bit grey PNG in units of the camera file's `depth_scale_m`, or a NumPy file (`.npy`), whose
+            floats are metres and whose integers are such units; 0 or NaN where the sensor saw nothing.
         camera: camera file, see `read_camera`.
 
     Raises:
@@ -87,6 +88,27 @@ def _read_colour(path: Path, file: CameraFile) -> UInt8[np.ndarray, "h w 3"]:
 
 
 def _read_depth(path: Path, file: CameraFile) -> Float32[np.ndarray, "h w"]:
+    values = _read_array(path, file) if path.suffix == ".npy" else np.array(_open_depth(path, file))
+    in_metres = np.issubdtype(values.dtype, np.floating)
+    metres = values.astype(np.float32) * np.float32(1.0 if in_metres else file.depth_scale_m)
+    known = (metres > 0) & np.isfinite(metres)
+    low, high = DEPTH_RANGE_M
+    median = float(np.median(metres[known])) if known.any() else 0.0
+    if not low <= median <= high:
+        unit = (
+            "numbers with a fraction are metres" if in_metres else f"depth_scale_m is {file.depth_scale_m:g}"
+        )
+        raise InputError(
+            f"The depth image's median is {median:.3g} m, outside of {low:g}-{high:g} m"
+            if known.any()
+            else "The depth image is empty: the sensor saw nothing",
+            where=path,
+            fix=f"check the depth's unit: {unit}; save millimetres as integers with depth_scale_m 0.001",
+        )
+    return np.where(known, metres, np.float32(np.nan))
+
+
+def _open_depth(path: Path, file: CameraFile) -> Image.Image:
     image = _open_image(path, file, formats=("PNG",))
     if not image.mode.startswith("I"):
         raise InputError(
@@ -94,19 +116,30 @@ def _read_depth(path: Path, file: CameraFile) -> Float32[np.ndarray, "h w"]:
             where=path,
             fix="save raw depth as a 16-bit PNG, not a picture of it; colour and depth may be swapped",
         )
-    units = np.array(image).astype(np.float32)
-    known = units > 0
-    low, high = DEPTH_RANGE_M
-    median = float(np.median(units[known])) * file.depth_scale_m if known.any() else 0.0
-    if not low <= median <= high:
+    return image
+
+
+def _read_array(path: Path, file: CameraFile) -> np.ndarray:
+    """Depth from a NumPy file, of the size that the camera file gives."""
+    expected = (file.camera.height, file.camera.width)
+    try:
+        # Mapped, so that a file cannot claim memory before its size is compared; pickles are refused.
+        values = np.load(path, mmap_mode="r", allow_pickle=False)
+    except FileNotFoundError as error:
+        raise InputError("The depth file does not exist", where=path, fix="check the path") from error
+    except (OSError, ValueError, EOFError) as error:
         raise InputError(
-            f"The depth image's median is {median:.3g} m, outside of {low:g}-{high:g} m"
-            if known.any()
-            else "The depth image is empty: the sensor saw nothing",
+            f"The depth file cannot be read: it is no array of numbers ({error})",
             where=path,
-            fix=f"check the depth's unit: depth_scale_m is {file.depth_scale_m:g}, and 0.001 for millimetres",
+            fix="save it with numpy.save as a plain array",
+        ) from error
+    if values.shape != expected or values.dtype.kind not in "uif":
+        raise InputError(
+            f"The depth file holds {values.dtype} of shape {values.shape}, not numbers of shape {expected}",
+            where=path,
+            fix="give colour, depth and camera file of the same view, the depth registered to the colour",
         )
-    return np.where(known, units * np.float32(file.depth_scale_m), np.float32(np.nan))
+    return np.array(values)
 
 
 def _open_image(path: Path, file: CameraFile, formats: tuple[str, ...]) -> Image.Image:

@@ -20,6 +20,8 @@ class GraspPlan:
         faces: face of the bounding box that each start aimed at; decides how the hand closes.
         result: the grasps, with palm poses in the camera frame.
         T_world_camera: pose of the camera.
+        T_table_camera: pose of the camera over the table that it sees: z up from the table's top, the origin
+            under the camera, x along the image's right.
     """
 
     planner: str
@@ -27,6 +29,7 @@ class GraspPlan:
     faces: tuple[Face, ...]
     result: PlanResult
     T_world_camera: Float[np.ndarray, "4 4"]
+    T_table_camera: Float[np.ndarray, "4 4"]
 
     def palm_pose(self, start: int) -> Float[np.ndarray, "4 4"]:
         """T_camera_palm of a planned grasp."""
@@ -35,6 +38,11 @@ class GraspPlan:
     def palm_pose_in_world(self, start: int) -> Float[np.ndarray, "4 4"]:
         """T_world_palm of a planned grasp."""
         pose: Float[np.ndarray, "4 4"] = self.T_world_camera @ self.palm_pose(start)
+        return pose
+
+    def palm_pose_over_table(self, start: int) -> Float[np.ndarray, "4 4"]:
+        """T_table_palm of a planned grasp."""
+        pose: Float[np.ndarray, "4 4"] = self.T_table_camera @ self.palm_pose(start)
         return pose
 
     def summary(self) -> str:

@@ -13,7 +13,7 @@ from preshape.grasps.space import GraspSpace
 from preshape.planning.grasp_plan import GraspPlan
 from preshape.planning.result import PlanResult, PlanStatus
 
-FORMAT = "preshape-plan/1"
+FORMAT = "preshape-plan/2"
 """Name and version of the format; raised whenever old files could be misread."""
 THETAS = ("theta", "initial_theta")
 SCALARS = (
@@ -42,6 +42,7 @@ def write_plan(path: str | Path, plan: GraspPlan) -> None:
         "units": space.units,
         "frame": space.frame,
         "T_world_camera": plan.T_world_camera,
+        "T_table_camera": plan.T_table_camera,
         "evaluations": result.evaluations,
         "runtime_s": result.runtime_s,
         "grasps": [_grasp(plan, int(start)) for start in result.ranking],
@@ -81,6 +82,7 @@ def _grasp(plan: GraspPlan, start: int) -> dict[str, Any]:
         "status": result.status[start].value,
         **{name: getattr(result, name)[start] for name in SCALARS},
         "T_camera_palm": plan.palm_pose(start),
+        "T_table_palm": plan.palm_pose_over_table(start),
         "T_world_palm": plan.palm_pose_in_world(start),
         "joints": dict(zip(space.joint_names, space.joints(theta).tolist(), strict=True)),
         **{name: getattr(result, name)[start] for name in THETAS},
@@ -113,6 +115,7 @@ def _plan(content: dict[str, Any], space: GraspSpace) -> GraspPlan:
         faces=tuple(Face(grasp["face"]) for grasp in by_start),
         result=result,
         T_world_camera=_numbers(content["T_world_camera"]).reshape(4, 4),
+        T_table_camera=_numbers(content["T_table_camera"]).reshape(4, 4),
     )
 
 

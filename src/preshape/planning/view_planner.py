@@ -1,12 +1,15 @@
 """From an RGB-D view to ranked grasps."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 import torch
 
+from preshape.checkpoints import load_weights
 from preshape.errors import InputError
+from preshape.geometry.pose import pose_over_plane
 from preshape.grasps.heuristic import HeuristicSettings, InitialGrasp, heuristic_grasps
 from preshape.grasps.space import GraspSpace
 from preshape.models.success_model import GraspNetwork, SuccessModel
@@ -51,6 +54,15 @@ class ViewPlanner:
     proposer: RegressedGrasp | None = None
     segmentation: SegmentationSettings = field(default_factory=SegmentationSettings)
 
+    def with_network(self, model: GraspNetwork, weights: str | Path) -> "ViewPlanner":
+        """The same planner with a network, into which trained weights are read.
+
+        Raises:
+            InputError: if the weights cannot be used.
+        """
+        load_weights(weights, model)
+        return replace(self, model=model)
+
     def plan(self, observation: Observation, rng: np.random.Generator) -> GraspPlan:
         """Plan from heuristic initial grasps.
 
@@ -79,7 +91,8 @@ class ViewPlanner:
             objective = ConstrainedObjective(objective, self.constraint.in_view(segmented))
         result = self.method.plan(objective, theta, bounds)
         faces = tuple(grasp.face for grasp in initial)
-        return GraspPlan(self.name, self.space, faces, result, observation.camera.T_world_camera)
+        poses = observation.camera.T_world_camera, pose_over_plane(segmented.plane)
+        return GraspPlan(self.name, self.space, faces, result, *poses)
 
     @staticmethod
     def _view(observation: Observation, segmented: SegmentedObject) -> ViewBatch:

@@ -30,7 +30,7 @@ def plan_with(*climbs: list[float]) -> GraspPlan:
         climb=tuple(tuple(climb) for climb in climbs),
         violation_m=np.zeros(starts),
     )
-    return GraspPlan("test", allegro_space(), tuple(Face)[:starts], result, np.eye(4))
+    return GraspPlan("test", allegro_space(), tuple(Face)[:starts], result, np.eye(4), np.eye(4))
 
 
 @given(st.lists(probabilities, min_size=1, max_size=3))

@@ -46,7 +46,7 @@ def test_every_grasp_has_its_panel_and_says_what_is_known() -> None:
     bounds = Bounds.around(initial, allegro_space(), BoxSize())
     result = HeuristicPlanner().plan(UnknownSuccess(), initial, bounds)
     faces = (Face.TOP, Face.SIDE_NEAREST)
-    plan = GraspPlan("heuristic", allegro_space(), faces, result, SCENE.camera.T_world_camera)
+    plan = GraspPlan("heuristic", allegro_space(), faces, result, SCENE.camera.T_world_camera, np.eye(4))
     figure = plan_picture(BoxRenderer()(SCENE), plan, allegro_hand())
     assert [axes.get_title() for axes in figure.axes] == [
         "1. top: success unknown",

@@ -46,6 +46,26 @@ def load(folder: Path) -> Observation:
     return load_view(folder / RGB_NAME, folder / DEPTH_NAME, folder / CAMERA_NAME)
 
 
+def test_depth_may_be_metres_or_millimetres_in_a_numpy_file(folder: Path) -> None:
+    expected, path = load(folder).depth, folder / "depth.npy"
+    for values in (expected, np.nan_to_num(expected * 1000).round().astype(np.uint16)):
+        np.save(path, values)
+        loaded = load_view(folder / RGB_NAME, path, folder / CAMERA_NAME)
+        np.testing.assert_allclose(loaded.depth, expected, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "values", [np.full((2, 2), 1.0), np.full((12, 16), "1"), np.array([{}]), None], ids=str
+)
+def test_a_numpy_file_of_something_else_is_refused(values: Any, folder: Path) -> None:
+    path = folder / "depth.npy"
+    if values is not None:
+        np.save(path, values)
+    with pytest.raises(InputError) as refusal:
+        load_view(folder / RGB_NAME, path, folder / CAMERA_NAME)
+    assert refusal.value.where == str(path)
+
+
 def edit_camera(folder: Path, **changes: Any) -> None:
     """Change keys of the camera file; None takes a key away."""
     content = json.loads((folder / CAMERA_NAME).read_text()) | changes

@@ -28,9 +28,8 @@ FACES = (Face.TOP, Face.SIDE_NEAREST, Face.SIDE_SECOND)
 def some_plan(planner: Planner, objective: Objective) -> GraspPlan:
     initial = np.random.default_rng(0).uniform(0.3, 0.4, (3, 8)) * [1, 1, 1, 1, 1, 1, 0.5, 1]
     result = planner.plan(objective, initial, Bounds.around(initial, SPACE, BoxSize()))
-    return GraspPlan(
-        "test", SPACE, FACES, result, make_pose(np.diag([1.0, -1.0, -1.0]), np.array([0, 0, 2.0]))
-    )
+    poses = (make_pose(np.diag([1.0, -1.0, -1.0]), np.array([0, 0, height])) for height in (2.0, 1.4))
+    return GraspPlan("test", SPACE, FACES, result, *poses)
 
 
 @pytest.fixture(
@@ -68,13 +67,14 @@ def test_the_file_says_how_to_grasp_with_the_best_first(tmp_path: Path) -> None:
     rotation = rotation_from_euler_xyz(torch.tensor(best["theta"][3:6])).numpy()
     np.testing.assert_allclose(T_camera_palm[:3, :3], rotation, atol=1e-6)
     np.testing.assert_allclose(best["T_world_palm"], plan.T_world_camera @ T_camera_palm)
+    np.testing.assert_allclose(best["T_table_palm"], plan.T_table_camera @ T_camera_palm)
     assert best["joints"] == dict(zip(SPACE.joint_names, best["theta"][6:], strict=True))
 
 
 @pytest.mark.parametrize(
     "damage",
     [
-        {"format": "preshape-plan/0"},
+        {"format": "preshape-plan/1"},
         {"grasp_space": "rectangle4"},
         {"grasps": []},
         {"grasps": [{"start": 0}]},

@@ -1,0 +1,47 @@
+"""What `python src/plan.py` does, for Python programs."""
+
+from pathlib import Path
+
+import numpy as np
+from hydra import compose, initialize_config_dir
+from hydra.utils import instantiate
+
+import preshape.entry_point  # noqa: F401 - registers what the configuration refers to
+from preshape.composition import check_composition
+from preshape.paths import project_root
+from preshape.perception.view_choice import load_chosen_view
+from preshape.planning.grasp_plan import GraspPlan
+from preshape.planning.view_planner import ViewPlanner
+
+
+def configured_planner(weights: str | Path | None, *choices: str) -> ViewPlanner:
+    """The planner of `conf/plan.yaml`.
+
+    Args:
+        weights: a trained network (`model.safetensors` of a training); None for planners that need none.
+        choices: as on the command line, such as `planner=cem` or `model=config_cnn`.
+
+    Raises:
+        InputError: if the choices do not fit together, or the weights cannot be used.
+    """
+    with initialize_config_dir(str(project_root() / "conf"), version_base="1.3"):
+        cfg = compose("plan", list(choices))
+    cfg.weights = None if weights is None else str(weights)
+    check_composition(cfg)
+    planner: ViewPlanner = instantiate(cfg.view_planner)
+    return planner if cfg.weights is None else planner.with_network(instantiate(cfg.model), cfg.weights)
+
+
+def plan_view(view: str | Path, weights: str | Path | None, *choices: str, seed: int = 0) -> GraspPlan:
+    """Plan grasps for a saved view, ranked.
+
+    Args:
+        view: folder with `rgb.png`, `depth.png` and `camera.json`.
+        weights, choices: see `configured_planner`.
+        seed: of the initial grasps.
+
+    Raises:
+        InputError: if the view, the choices or the weights cannot be used.
+    """
+    planner = configured_planner(weights, *choices)
+    return planner.plan(load_chosen_view(view), np.random.default_rng(seed))
