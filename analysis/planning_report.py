@@ -1,7 +1,7 @@
 """The simulation experiment: result file, charts, and a section of the results page."""
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -30,7 +30,7 @@ class PlanningReport:
     Args:
         conditions: folder of the evaluation of each condition; those that are not finished are left out.
         subject: the planner that is tested against each of the others.
-        improvement: result file of `sim/improve.py`; None, or one that is not there, leaves the rounds out.
+        improvements: result files of `sim/improve.py`; those that are not there are left out.
         output: the result file.
         page: the results page; pictures lie in the folder pictures beside it.
         space: what theta means.
@@ -38,7 +38,7 @@ class PlanningReport:
 
     conditions: Mapping[str, str]
     subject: str
-    improvement: str | None
+    improvements: Sequence[str]
     output: str
     page: str
     space: GraspSpace
@@ -100,10 +100,8 @@ class PlanningReport:
         ]
 
     def _rounds(self) -> list[dict[str, Any]]:
-        if self.improvement is None or not Path(self.improvement).is_file():
-            return []
-        rounds: list[dict[str, Any]] = read_json(self.improvement)["rounds"]
-        return rounds
+        found = [read_json(path) for path in self.improvements if Path(path).is_file()]
+        return [{"acquisition": one["acquisition"], **entry} for one in found for entry in one["rounds"]]
 
     def _lines(self, content: Mapping[str, Any]) -> list[str]:
         runs = content["runs"]
@@ -142,6 +140,7 @@ seconds are those of planning beside other work, without image features."""
 RELIABILITY = """How far the probability that planners report at the grasp that was executed is from what
 came of it, with its 95 % bootstrap interval; then after corrections that were each fitted to one half of
 the scenes and applied to the other:"""
-ROUNDS = """`python sim/improve.py`: in each round the planner's own optima on objects that are not tested
-are executed and added to the trials, the network is trained again, and the planners compete again on the
-same test scenes."""
+ROUNDS = """`python sim/improve.py`: in each round grasps on objects that are not tested are executed and
+added to the trials, the network is trained again, and the planners compete again on the same test scenes.
+What is added are the planner's own optima, or as a comparison grasps of which the network is least sure
+(`acquisition=uncertainty`), or any (`acquisition=uniform`)."""

@@ -105,14 +105,15 @@ def object_lines(runs: Rows) -> list[str]:
 def round_lines(rounds: Rows) -> list[str]:
     """A row for each round of improvement and planner."""
     lines = [
-        "| round | trials learned from | added: lifted of executed | AUC on held-out trials | planner "
-        "| executed | lifted | rate | predicted |",
-        "|---:|---:|---|---|---|---:|---:|---|---:|",
+        "| added grasps | round | trials of the table | added: lifted of executed | AUC on held-out trials "
+        "| planner | executed | lifted | rate | predicted |",
+        "|---|---:|---:|---|---|---|---:|---:|---|---:|",
     ]
     for entry in rounds:
         added = entry["added"]
         for name, planner in entry["planners"].items():
             cells = (
+                planner_name(entry["acquisition"]),
                 entry["round"],
                 entry["trials"],
                 "–" if added is None else f"{added['lifted']} of {added['executed']}",

@@ -28,17 +28,8 @@ def test_planners_compete_on_one_scene_and_a_page_shows_it(tmp_path: Path, alleg
     model = PalmPoints("palm_points", allegro_space.name, allegro_space.dim)
     weights = tmp_path / "model.safetensors"
     save_weights(weights, model, data_hash="none", git_revision="none", metrics={})
-    done = run(
-        tmp_path,
-        "sim/evaluate.py",
-        f"weights={weights}",
-        *(
-            "evaluate.scenes=1",
-            "evaluate.workers=1",
-            "evaluate.filmed_scenes=1",
-            "evaluator.recorder.every=150",
-        ),
-    )
+    settings = ("evaluate.workers=1", "evaluate.filmed_scenes=1", "evaluator.recorder.every=150")
+    done = run(tmp_path, "sim/evaluate.py", f"weights={weights}", *settings, "evaluate.scenes=1")
     assert done.returncode == 0, done.stderr
     folder = tmp_path / "outputs" / "evaluate" / "palm_points"
     summary = json.loads((folder / "evaluation.json").read_text())["planners"]
@@ -62,6 +53,13 @@ def test_planners_compete_on_one_scene_and_a_page_shows_it(tmp_path: Path, alleg
     assert shown.returncode == 0, shown.stderr
     assert shown.stdout.splitlines()[-1].endswith(str(page))
     assert "http://" not in page.read_text().replace("http://www.w3.org", "")
+
+    more = run(tmp_path, "sim/evaluate.py", f"weights={weights}", *settings, "evaluate.scenes=2")
+    assert more.returncode == 0, more.stderr
+    assert "1 of 2 scenes are there" in more.stdout
+    longer = read_data_set(folder, allegro_space)[1]
+    assert longer.rows[: len(trials)].equals(trials.rows)
+    assert len(set(longer.scene_ids.tolist())) == 2
 
 
 def test_weights_that_are_not_there_are_refused_before_any_work(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from analysis.planning_report import PlanningReport
 from analysis.planning_runs import of_planner, outcome_by_scene
 from preshape.errors import InputError
 from preshape.evaluation.intervals import wilson
-from preshape.files import read_json
+from preshape.files import read_json, write_json
 
 KEYS = ("condition", "planner", "n", "executed", "lifted", "rate", "low", "high", "predicted", "seconds")
 
@@ -21,7 +21,7 @@ def report(evaluation: Path, output: Path, **conditions: str) -> PlanningReport:
     return PlanningReport(
         conditions=conditions or {"seen": str(evaluation), "scans": str(output / "missing")},
         subject="inference",
-        improvement=None,
+        improvements=[str(output / "missing.json"), str(output / "improvement.json")],
         output=str(output / "planning.json"),
         page=str(output / "results.md"),
         space=allegro_space(),
@@ -31,6 +31,13 @@ def report(evaluation: Path, output: Path, **conditions: str) -> PlanningReport:
 @pytest.fixture(scope="module")
 def written(evaluation_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("report")
+    done = {"round": 1, "trials": 60, "added": None, "auc": {"value": 0.9, "low": 0.8, "high": 0.95}}
+    planners = read_json(evaluation_folder / "evaluation.json")["planners"]
+    rounds = [
+        done | {"planners": planners},
+        done | {"round": 2, "added": planners["inference"], "planners": planners},
+    ]
+    write_json(place / "improvement.json", {"acquisition": "uniform", "rounds": rounds})
     assert "heuristic" in report(evaluation_folder, place).write()
     return place
 
@@ -52,6 +59,7 @@ def test_the_report_counts_what_the_trials_say(evaluation_folder: Path, written:
     page = (written / "results.md").read_text(encoding="utf-8")
     assert "62 %" in page
     assert "scans" not in page
+    assert "| Uniform | 2 | 60 |" in page
 
 
 def test_pairs_are_scenes_on_which_both_executed_a_grasp(evaluation_folder: Path, written: Path) -> None:
