@@ -40,4 +40,9 @@ def test_all_planners_have_the_same_box(path: Path) -> None:
     cfg = preset(path.stem)
     assert cfg.name == path.stem
     assert instantiate(cfg.box) == BoxSize()
-    assert cfg.needs_model == (cfg.name != "heuristic")
+    assert cfg.needs_model == (cfg.name not in {"heuristic", "regression"})
+    # What is published is left as it is; all others keep to the same rules.
+    as_published = cfg.name in {"heuristic", "regression", "paper"}
+    rules = OmegaConf.to_container(cfg, resolve=False)
+    assert isinstance(rules, dict)
+    assert rules["constraint"] == (None if as_published else "${robot.clearance}")
