@@ -1,7 +1,9 @@
 """An evaluation as a configuration describes it, kept where an interrupted one goes on."""
 
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
@@ -32,7 +34,7 @@ def run_evaluation(cfg: DictConfig, output: Path) -> list[PlannerSummary]:
     settings = instantiate(cfg.evaluate).with_objects(len(maker.names))
     evaluator = OmegaConf.to_container(cfg.evaluator, resolve=True)  # worker processes may lack our resolvers
     decisive = {key: cfg.evaluate[key] for key in cfg.evaluate if key not in ENDLESS}
-    hashes = (file_hash(cfg.weights), maker.objects.fingerprint)
+    hashes = (maker.objects.fingerprint, [file_hash(path) for path in _files(evaluator)])
     code = (source_digest(try_planners.__module__), *code_of(evaluator))
     name = fingerprint(evaluator, OmegaConf.create(decisive), *hashes, code, cache=cfg.paths.cache)
     trials = evaluate(
@@ -46,3 +48,12 @@ def run_evaluation(cfg: DictConfig, output: Path) -> list[PlannerSummary]:
     summary = summarise(trials)
     write_summary(output / SUMMARY_FILE, summary, settings.seed)
     return summary
+
+
+def _files(node: Any) -> Iterator[str]:
+    """The files that a configuration names: weights, whose content decides."""
+    if isinstance(node, dict | list):
+        for entry in node.values() if isinstance(node, dict) else node:
+            yield from _files(entry)
+    elif isinstance(node, str) and Path(node).is_file():
+        yield node

@@ -3,7 +3,7 @@
 import logging
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,9 @@ from preshape.perception.view_files import save_view
 from preshape.planning.grasp_plan import GraspPlan
 from preshape.planning.plan_files import write_plan
 from preshape.planning.view_planner import ViewPlanner
-from sim.laboratory import Laboratory, SceneView, trial_seed
+from sim.execution import Spectator
+from sim.finishing import TrialRunning
+from sim.laboratory import Laboratory, trial_seed
 from sim.recorder import Recorder, RecorderSettings
 from sim.trial import PlannedGrasp
 
@@ -66,6 +68,27 @@ class Evaluator:
     laboratory: Laboratory
     planners: Mapping[str, ViewPlanner]
     recorder: RecorderSettings
+
+
+@dataclass(frozen=True, eq=False)
+class RememberingRunner:
+    """Tries grasps on one scene, each once: the same grasp and seed would give the same trial again.
+
+    Args:
+        runner: who really tries them.
+        known: the trials so far.
+    """
+
+    runner: TrialRunning
+    known: dict[tuple[Face, int, bytes], Trial] = field(default_factory=dict)
+
+    def run(self, scene: Scene, grasp: PlannedGrasp, spectator: Spectator | None = None) -> Trial:
+        """Try one grasp, or say what came of the same one; one that is filmed is always tried."""
+        key = (grasp.face, grasp.seed, grasp.planned.tobytes())
+        if key not in self.known or spectator is not None:
+            self.known[key] = self.runner.run(scene, grasp, spectator)
+        own = ("trial_id", "planner", "initial", "success_prob")
+        return replace(self.known[key], **{name: getattr(grasp, name) for name in own})
 
 
 PLANNER_PARTS = ("method", "box", "constraint", "prior", "proposer")
@@ -126,19 +149,20 @@ def try_planners(
         return []
     seconds = time.perf_counter() - start
     save_view(folder / "views" / f"{scene.scene_id}", view.observation)
+    runner = RememberingRunner(evaluator.laboratory.runner)
     trials: list[Trial] = []
     for number, (name, planner) in enumerate(evaluator.planners.items()):
         plan = planner.plan_from(view.observation, view.segmented, view.initial)
         write_plan(folder / "plans" / f"{scene.scene_id}_{name}.json", plan)
-        trials += _execute(evaluator, settings, scene, view, plan, number, folder)
+        trials += _execute(evaluator, runner, settings, scene, plan, number, folder)
     return [replace(trial, rendering_s=seconds / len(trials)) for trial in trials]
 
 
 def _execute(
     evaluator: Evaluator,
+    runner: TrialRunning,
     settings: EvaluationSettings,
     scene: Scene,
-    view: SceneView,
     plan: GraspPlan,
     number: int,
     folder: Path,
@@ -155,10 +179,10 @@ def _execute(
             planned=plan.result.theta[start],
             success_prob=float(plan.result.success_prob[start]),
             seed=trial_seed(settings.seed, scene.scene_id, start),
-            planning_s=plan.result.runtime_s / len(view.initial),
+            planning_s=plan.result.runtime_s / len(plan.faces),
         )
         recorder = Recorder(evaluator.recorder) if film else None
-        trial = evaluator.laboratory.runner.run(scene, grasp, recorder)
+        trial = runner.run(scene, grasp, recorder)
         trials.append(trial)
         if trial.outcome.executed:
             if recorder is not None:
