@@ -18,6 +18,8 @@ from preshape.paths import project_root
         ("train", "demo", "run_name", "demo_palm_points"),
         ("train", "unseen", "dataset.data.hold_out.split", "objects"),
         ("train", "unseen", "run_name", "unseen_palm_points"),
+        ("train", "seen", "run_name", "seen_palm_points"),
+        ("train", "seen", "dataset.data.hold_out.split", "scenes"),
         ("evaluate", "planning", "evaluate.poses_per_object", 20),
         ("evaluate", "planning", "run_name", "planning_seen"),
         ("evaluate", "demo_planning", "run_name", "demo"),
