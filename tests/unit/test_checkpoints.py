@@ -7,11 +7,19 @@ from pathlib import Path
 
 import pytest
 import torch
+from hydra import compose, initialize_config_dir
+from hydra.utils import instantiate
 from safetensors.torch import save_file
 
+import preshape.entry_point  # noqa: F401 - registers the resolvers
 from preshape.checkpoints import load_weights, save_weights, sidecar_path
+from preshape.data.tables import data_hash
 from preshape.errors import InputError
 from preshape.models.config_cnn import ConfigCNN
+from preshape.paths import project_root
+
+LEARNED_FROM = ("allegro_grocery", "allegro_grocery_optima")
+"""Data sets of the shipped weights."""
 
 
 def make_model(
@@ -116,3 +124,11 @@ def test_weights_that_are_not_numbers_are_refused(tmp_path: Path) -> None:
 def test_weights_of_another_network_are_refused(weights: Path, model: ConfigCNN, message: str) -> None:
     with pytest.raises(InputError, match=message):
         load_weights(weights, model)
+
+
+def test_the_shipped_weights_are_those_of_the_default_network() -> None:
+    with initialize_config_dir(str(project_root() / "conf"), version_base="1.3"):
+        cfg = compose("train")
+    model = instantiate(cfg.model)
+    shipped = load_weights(project_root() / "weights" / f"{model.name}.safetensors", model)
+    assert shipped.data_hash == data_hash(*(Path(cfg.paths.data) / name for name in LEARNED_FROM))
