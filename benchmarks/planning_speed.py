@@ -7,12 +7,12 @@ from functools import partial
 import numpy as np
 import torch
 from comparison import Comparison, side_by_side
+from noise_views import noise_views
 from torch import Tensor
 
 from preshape.models.config_cnn import ConfigCNN
 from preshape.models.palm_points import PalmPoints
 from preshape.models.success_model import SuccessModel
-from preshape.perception.object_view import CLOUD_SIZE, PATCH_SIZE
 from preshape.perception.view_batch import ViewBatch
 from preshape.planning.bounds import Bounds
 from preshape.planning.gradient_ascent import GradientAscent
@@ -125,15 +125,7 @@ def _compare(name: str, ours: Plan, peer_name: str, peer: Plan, starts: int, flo
 def _problem(starts: int, seed: int) -> tuple[ViewBatch, np.ndarray, Bounds]:
     """A view of noise, and initial grasps a metre before the camera."""
     generator = torch.Generator().manual_seed(seed)
-    box = torch.eye(4)
-    box[2, 3] = 1.0
-    view = ViewBatch(
-        patch=torch.rand(1, 8, PATCH_SIZE, PATCH_SIZE, generator=generator),
-        intrinsics=torch.tensor([[525.0, 525.0, PATCH_SIZE / 2, PATCH_SIZE / 2]]),
-        points=0.05 * torch.randn(1, CLOUD_SIZE, 3, generator=generator) + box[:3, 3],
-        table=torch.tensor([[0.0, 0.0, 1.0, 0.0]]),
-        T_camera_box=box[None],
-    )
+    view = noise_views(1, generator)
     initial = 0.3 * torch.randn(starts, 14, generator=generator, dtype=torch.float64).numpy()
     initial[:, :3] = 0.2 * initial[:, :3] + [0.0, 0.0, 1.0]
     return view, initial, Bounds(initial - HALF_WIDTH, initial + HALF_WIDTH)

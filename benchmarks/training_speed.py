@@ -4,12 +4,11 @@ from collections.abc import Callable
 
 import torch
 from comparison import Comparison, side_by_side
+from noise_views import noise_views
 from torch import Tensor
 from torch.nn.functional import binary_cross_entropy_with_logits
 
 from preshape.models.config_cnn import ConfigCNN
-from preshape.perception.object_view import PATCH_SIZE
-from preshape.perception.view_batch import ViewBatch
 
 BATCH, RUNS = 8, 7
 
@@ -17,8 +16,7 @@ BATCH, RUNS = 8, 7
 def channels_last_training(seed: int, flop_per_s: float) -> Comparison:
     """Forward, backward and an Adam step on a batch of the paper's size."""
     generator = torch.Generator().manual_seed(seed)
-    patch = torch.rand(BATCH, 8, PATCH_SIZE, PATCH_SIZE, generator=generator)
-    view = ViewBatch(patch, torch.ones(BATCH, 4))
+    view = noise_views(BATCH, generator)
     theta = torch.randn(BATCH, 14, generator=generator)
     label = torch.arange(BATCH).remainder(2).float()
 
@@ -32,7 +30,7 @@ def channels_last_training(seed: int, flop_per_s: float) -> Comparison:
         def logits() -> Tensor:
             if channels_last:
                 return model(view, theta)
-            return model.head(model.image_channel(model.normalize_patch(patch)), theta)
+            return model.head(model.image_channel(model.normalize_patch(view.patch)), theta)
 
         def step() -> None:
             optimizer.zero_grad()

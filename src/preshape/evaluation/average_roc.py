@@ -12,7 +12,7 @@ POINTS = 201
 """False positive rates at which curves are averaged, from 0 to 1."""
 STYLES = (("#0072B2", "-"), ("#B24A00", "--"), ("#117733", "-."), ("0.3", ":"))
 """Colour and line of each curve of a picture."""
-Fold = tuple[Bool[np.ndarray, "n"], Float[np.ndarray, "n"]]
+Fold = tuple[Bool[np.ndarray, "_"], Float[np.ndarray, "_"]]
 """Outcomes of a fold's test trials, and the success probabilities that were predicted for them."""
 
 

@@ -21,7 +21,7 @@ def _workers_for_few_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in folder.rglob("*.patch")}
+    return {path.name: path.read_bytes() for path in folder.rglob("*.view")}
 
 
 def test_parallel_equals_serial(tmp_path: Path) -> None:
