@@ -75,10 +75,6 @@ def seconds_lines(figures: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def _cells(*cells: object) -> str:
-    return f"| {' | '.join(map(str, cells))} |"
-
-
 def sensitivity_lines(result: Mapping[str, Any]) -> list[str]:
     """What flipped under which variant, and soft labels where there are some."""
     lines = [

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from analysis.learning_runs import LearningRun
+from analysis.wording import table_row
 from preshape.evaluation.decisions import PAPER_THRESHOLD
 
 Runs = Mapping[tuple[str, str], LearningRun]
@@ -192,4 +193,4 @@ def _spread(values: Mapping[str, Any]) -> str:
 
 def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
     rule = ["---", *["---:"] * (len(header) - 1)]
-    return [f"| {' | '.join(cells)} |" for cells in (header, rule, *rows)]
+    return [table_row(*cells) for cells in (header, rule, *rows)]

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from analysis.paper_simulation import ALL, paper_number
-from analysis.wording import plain_name, planner_name
+from analysis.wording import plain_name, planner_name, table_row
 
 Rows = Sequence[Mapping[str, Any]]
 
@@ -31,7 +31,7 @@ def run_lines(runs: Rows) -> list[str]:
             f"{run['evaluations']:.0f}",
             f"{run['seconds']:.3f}",
         )
-        lines.append(f"| {' | '.join(map(str, cells))} |")
+        lines.append(table_row(*cells))
     return lines
 
 
@@ -53,7 +53,7 @@ def test_lines(tests: Rows, of_scenes: Rows) -> list[str]:
             points(whole["difference"]),
             probability(whole["p"]),
         )
-        lines.append(f"| {' | '.join(map(str, cells))} |")
+        lines.append(table_row(*cells))
     return lines
 
 
@@ -86,7 +86,7 @@ def reliability_lines(runs: Rows) -> list[str]:
             f"{first['ece']:.2f}",
             *corrected,
         )
-        lines.append(f"| {' | '.join(map(str, cells))} |")
+        lines.append(table_row(*cells))
     return lines
 
 
@@ -124,7 +124,7 @@ def round_lines(rounds: Rows) -> list[str]:
                 share(planner) if planner["executed"] else "–",
                 number(planner["predicted"]),
             )
-            lines.append(f"| {' | '.join(map(str, cells))} |")
+            lines.append(table_row(*cells))
     return lines
 
 

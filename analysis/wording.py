@@ -1,4 +1,4 @@
-"""How names of the tables read on a page."""
+"""How names and rows of the tables read on a page."""
 
 from preshape.data.trial import TrialOutcome
 
@@ -15,6 +15,11 @@ MARKS = {
     TrialOutcome.MISSED: "○",
 }
 """Outcomes are told by a mark and a word; colour only repeats it."""
+
+
+def table_row(*cells: object) -> str:
+    """A row of a Markdown table."""
+    return f"| {' | '.join(map(str, cells))} |"
 
 
 def plain_name(name: str) -> str:
