@@ -68,7 +68,8 @@ class GraspNetwork(nn.Module):
 
         Patches in half precision, as they are cached, become single precision on the way.
         """
-        return torch.sub(patch, self.image_mean.view(-1, 1, 1)).div_(self.image_std.view(-1, 1, 1))
+        values = patch.to(self.image_mean.dtype, copy=True)
+        return values.sub_(self.image_mean.view(-1, 1, 1)).div_(self.image_std.view(-1, 1, 1))
 
     def normalize_theta(self, theta: Float[Tensor, "b d"]) -> Float[Tensor, "b d"]:
         """Configurations with zero mean and unit deviation per parameter over the training data."""
