@@ -15,7 +15,7 @@ from preshape.drawing.channel_grid import channel_grid
 from preshape.drawing.grasp_overlay import grasp_overlay
 from preshape.drawing.grasp_window import cut, grasp_window
 from preshape.hands.kinematics import HandKinematics
-from preshape.perception.object_view import object_view
+from preshape.perception.object_view import object_cloud, object_patch
 from preshape.perception.observation import Observation
 from preshape.perception.segmentation import SegmentationSettings, segment
 from preshape.planning.grasp_plan import GraspPlan
@@ -151,4 +151,4 @@ def _drawn(
 def _patch(observation: Observation) -> np.ndarray:
     """The patch around the object that the network sees."""
     segmented = segment(observation, SegmentationSettings())
-    return object_view(observation, segmented).channels
+    return object_patch(observation, object_cloud(segmented).centre(observation.camera))

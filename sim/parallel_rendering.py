@@ -25,7 +25,7 @@ class ParallelRendering:
     workers: int | None = None
     scene_limit_s: float = 120.0
 
-    def __call__(self, cache: ViewCache, scenes: Sequence[Scene]) -> Iterator[Scene]:
+    def __call__(self, cache: ViewCache, scenes: Sequence[Scene], *, with_patches: bool) -> Iterator[Scene]:
         """Make the views; yields each scene when its view is there.
 
         Raises:
@@ -33,10 +33,12 @@ class ParallelRendering:
         """
         count = min(self.workers or available_cores(), -(-len(scenes) // SCENES_PER_WORKER))
         if count <= 1:
-            yield from one_by_one(cache, scenes)
+            yield from one_by_one(cache, scenes, with_patches=with_patches)
             return
         waiting = list(range(len(scenes)))
-        with Workers(partial(_renderer, cache, tuple(scenes)), count, self.scene_limit_s) as workers:
+        with Workers(
+            partial(_renderer, cache, tuple(scenes), with_patches), count, self.scene_limit_s
+        ) as workers:
             while waiting or workers.busy:
                 while waiting and workers.free:
                     workers.give(waiting.pop())
@@ -44,17 +46,20 @@ class ParallelRendering:
                     if not made:
                         raise InputError(
                             f"The view of scene {scenes[number].scene_id} cannot be made: its worker fails",
-                            where=cache.path(scenes[number]),
+                            where=cache.path(scenes[number], "cloud"),
                             fix="look at the warnings above; if memory is short, take fewer workers",
                         )
                     yield scenes[number]
 
 
-def _renderer(cache: ViewCache, scenes: Sequence[Scene]) -> Work[int, bool]:
-    return partial(_render, cache, scenes)
+def _renderer(cache: ViewCache, scenes: Sequence[Scene], with_patches: bool) -> Work[int, bool]:
+    return partial(_render, cache, scenes, with_patches)
 
 
-def _render(cache: ViewCache, scenes: Sequence[Scene], number: int, begin: BeginStep) -> bool:
-    scene = scenes[number]
-    # Another process may fill the same cache.
-    return begin("rendering") and (cache.holds(scene) or cache.make(scene) is not None)
+def _render(
+    cache: ViewCache, scenes: Sequence[Scene], with_patches: bool, number: int, begin: BeginStep
+) -> bool:
+    if not begin("rendering"):
+        return False
+    cache.make(scenes[number], with_patch=with_patches)
+    return True

@@ -17,7 +17,7 @@ def main(cfg: DictConfig) -> None:
     """Learn from the training part of the trials, so that held-out objects stay unseen."""
     data = instantiate(cfg.dataset.data)
     data.setup()
-    data.leave_out_patches()
+    data.render(with_patches=False)
     lifted = data.train.lifted()
     examples = lifted[np.arange(len(lifted)).tolist()]
     prior = GraspPrior.fitted(

@@ -98,8 +98,7 @@ def train(
     data.setup()
     if isinstance(model, RegressionCNN):
         data.keep_lifted()
-    if "patch" not in model.looks_at:
-        data.leave_out_patches()
+    data.render(with_patches="patch" in model.looks_at)
     model.fit_statistics(data.train.patches(), data.train.theta)
     unfinished = folder / f"unfinished-{_identity(model, data, settings)}.ckpt"
     curves = _fit(model, data, settings, unfinished, run)

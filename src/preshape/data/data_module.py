@@ -80,7 +80,7 @@ class GraspDataModule(lightning.LightningDataModule):
         self._learned = trials_learned
 
     def setup(self, stage: str | None = None) -> None:
-        """Read the tables, render what is not rendered yet, and split; does nothing the second time.
+        """Read the tables and split them; does nothing the second time.
 
         Raises:
             InputError: if a table cannot be used, was collected with something else, or is too small.
@@ -90,7 +90,6 @@ class GraspDataModule(lightning.LightningDataModule):
         scenes, trials = reduce(joined, map(self._read, self._folders))
         executed = self._first(trials.executed)
         split = split_trials(executed, self._hold_out)
-        self._views.fill([scenes.by_id[scene_id] for scene_id in np.unique(executed.scene_ids).tolist()])
 
         def part(rows: Int[np.ndarray, "rows"]) -> GraspDataset:
             mask = np.isin(np.arange(len(executed)), rows)
@@ -150,11 +149,21 @@ class GraspDataModule(lightning.LightningDataModule):
                 fix="collect more trials with `python sim/collect.py`",
             )
 
-    def leave_out_patches(self) -> None:
-        """Show views without patches, for networks that do not look at them."""
-        self.train, self.validation, self.test = (
-            part.without_patches() for part in (self.train, self.validation, self.test)
-        )
+    def render(self, *, with_patches: bool) -> None:
+        """Render what is not rendered yet.
+
+        Args:
+            with_patches: whether views come with patches; networks that do not look at them are spared most
+                of the time and space that views take.
+
+        Raises:
+            InputError: if views cannot be made or kept.
+        """
+        parts = self.train, self.validation, self.test
+        scenes = {scene.scene_id: scene for part in parts for scene in part.scenes}
+        self._views.fill(list(scenes.values()), with_patches=with_patches)
+        if not with_patches:
+            self.train, self.validation, self.test = (part.without_patches() for part in parts)
 
     def train_dataloader(self) -> DataLoader[GraspBatch]:
         """Random batches with enough positives."""

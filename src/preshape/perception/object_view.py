@@ -26,7 +26,7 @@ class ObjectCloud:
         points: points of the object's visible surface (m), in random order, so that any part of them is a
             fair sample; an object of fewer pixels repeats some.
         table: the table's plane (a, b, c, d): unit normal up, n . p + d is the height of p over the table.
-        T_camera_box: pose of the object's bounding box, whose centre the patch lies around.
+        T_camera_box: pose of the object's bounding box, around whose centre the patch lies.
     """
 
     points: Float32[np.ndarray, "512 3"]
@@ -37,25 +37,6 @@ class ObjectCloud:
         """Pixel coordinates (u, v) to which the centre of the object's bounding box projects."""
         u, v = camera.project(self.T_camera_box[:3, 3])
         return float(u), float(v)
-
-
-@dataclass(frozen=True, eq=False)
-class ObjectView:
-    """What networks are shown of a view.
-
-    Args:
-        channels: the 8 channels of the patch around the object.
-        cloud: where the object is.
-    """
-
-    channels: Float[np.ndarray, "8 h w"]
-    cloud: ObjectCloud
-
-
-def object_view(observation: Observation, segmented: SegmentedObject) -> ObjectView:
-    """What networks are shown of a view in which the object was found."""
-    cloud = object_cloud(segmented)
-    return ObjectView(object_patch(observation, cloud.centre(observation.camera)), cloud)
 
 
 def object_cloud(segmented: SegmentedObject) -> ObjectCloud:

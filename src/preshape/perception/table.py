@@ -1,10 +1,10 @@
 """The table under the object: its plane by RANSAC and the region of that plane that the camera sees."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+import open3d as o3d
+from jaxtyping import Bool, Float
 from scipy.spatial import ConvexHull
 
 from preshape.errors import InputError
@@ -121,44 +121,14 @@ def horizontal_plane(
 def _inliers_of_largest_plane(
     points: Float[np.ndarray, "n 3"], settings: TableSettings
 ) -> Bool[np.ndarray, "n"]:
-    """Points near the best of the planes through random triples of points.
-
-    The same points as of Open3D's `segment_plane` without an early stop, in a third of its time. The best
-    plane has most inliers, and of several such planes the smallest distances to them.
-    """
-    first, second, third = np.moveaxis(points[_random_triples(len(points), settings)], 1, 0)
-    normals = np.cross(second - first, third - first)
-    lengths = np.linalg.norm(normals, axis=1)
-    proper = lengths > 0
-    normals, first = normals[proper] / lengths[proper, None], first[proper]
-    columns = np.ascontiguousarray(points.T)
-    best, best_rank = np.zeros(len(points), dtype=bool), (0, 0.0)
-    for normal, offset in zip(normals, -(normals * first).sum(axis=1), strict=True):
-        distances = normal @ columns
-        distances += offset
-        np.abs(distances, out=distances)
-        inliers = distances < settings.inlier_distance_m
-        count = int(np.count_nonzero(inliers))
-        if count >= best_rank[0]:
-            rank = (count, -float(np.square(distances[inliers]).sum()))
-            if rank > best_rank:
-                best, best_rank = inliers, rank
-    return best
-
-
-def _random_triples(n: int, settings: TableSettings) -> Int[np.ndarray, "t 3"]:
-    """Numbers of three different points out of n >= 100, for each iteration: those that Open3D draws."""
-    twister = np.random.MT19937()
-    state: Any = np.random.RandomState(settings.seed).get_state(legacy=False)
-    twister.state = state
-    draws = iter(np.random.Generator(twister).integers(n, size=4 * settings.iterations, dtype=np.uint32))
-    triples = np.empty((settings.iterations, 3), dtype=np.int64)
-    for triple in triples:
-        drawn: dict[int, None] = {}
-        while len(drawn) < 3:
-            drawn[int(next(draws))] = None
-        triple[:] = list(drawn)
-    return triples
+    """Points near the best of the planes through random triples of points."""
+    cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points))
+    o3d.utility.random.seed(settings.seed)
+    # Open3D's threads race to the early stop; with probability 1 there is none, and the plane repeats.
+    _, numbers = cloud.segment_plane(settings.inlier_distance_m, 3, settings.iterations, probability=1.0)
+    inliers = np.zeros(len(points), dtype=bool)
+    inliers[numbers] = True
+    return inliers
 
 
 def _fit_plane(points: Float[np.ndarray, "n 3"], up: Float[np.ndarray, "3"]) -> Float[np.ndarray, "4"]:

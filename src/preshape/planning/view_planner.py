@@ -13,7 +13,7 @@ from preshape.geometry.pose import pose_over_plane
 from preshape.grasps.heuristic import HeuristicSettings, InitialGrasp, heuristic_grasps
 from preshape.grasps.space import GraspSpace
 from preshape.models.success_model import GraspNetwork, SuccessModel
-from preshape.perception.object_view import object_cloud, object_view
+from preshape.perception.object_view import object_cloud, object_patch
 from preshape.perception.observation import Observation
 from preshape.perception.segmentation import SegmentationSettings, SegmentedObject, segment
 from preshape.perception.view_batch import ViewBatch
@@ -97,10 +97,11 @@ class ViewPlanner:
     def _view(self, observation: Observation, segmented: SegmentedObject) -> ViewBatch:
         # The patch takes longer than all else of a view, so it is made only for networks that look at it.
         judged_by_patch = self.model is not None and "patch" in self.model.looks_at
+        cloud = object_cloud(segmented)
         if self.proposer is None and not judged_by_patch:
-            return ViewBatch.of([object_cloud(segmented)], [observation.camera])
-        view = object_view(observation, segmented)
-        return ViewBatch.of([view.cloud], [observation.camera], torch.from_numpy(view.channels)[None])
+            return ViewBatch.of([cloud], [observation.camera])
+        patch = object_patch(observation, cloud.centre(observation.camera))
+        return ViewBatch.of([cloud], [observation.camera], torch.from_numpy(patch)[None])
 
     def _likelihood(self, view: ViewBatch) -> Objective:
         if self.model is None:

@@ -110,7 +110,7 @@ def test_views_may_come_without_patches(folder: Path) -> None:
     data = make_module(folder)
     data.setup()
     batch, *_ = data.test_dataloader()
-    data.leave_out_patches()
+    data.render(with_patches=False)
     without, *_ = data.test_dataloader()
     assert without.view.patch.shape == (len(batch.label), 8, 0, 0)
     assert all(torch.equal(one, other) for one, other in zip(without.view[1:], batch.view[1:], strict=True))

@@ -1,20 +1,21 @@
-"""The patch cache: derived, deletable at any moment, bounded, never out of date."""
+"""The view cache: derived, deletable at any moment, bounded, never out of date."""
 
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
 from synthetic_scenes import BoxRenderer, make_scene
 
 from preshape.data.scene import Scene
-from preshape.data.view_cache import ViewCache
-from preshape.data.view_cache_files import CLOUD_BYTES, TYPICAL_BYTES
+from preshape.data.view_cache import Part, ViewCache
+from preshape.data.view_cache_files import CLOUD_BYTES, TYPICAL_PATCH_BYTES
 from preshape.errors import InputError
-from preshape.perception.object_view import ObjectCloud, ObjectView, object_view
+from preshape.perception.object_view import ObjectCloud, object_cloud, object_patch
 from preshape.perception.observation import Observation
 from preshape.perception.segmentation import SegmentationSettings, segment
 
@@ -36,10 +37,6 @@ def renderer() -> CountingRenderer:
     return CountingRenderer()
 
 
-def are_equal(one: ObjectView, other: ObjectView) -> bool:
-    return np.array_equal(one.channels, other.channels) and same_cloud(one.cloud, other.cloud)
-
-
 def same_cloud(one: ObjectCloud, other: ObjectCloud) -> bool:
     names = ("points", "table", "T_camera_box")
     return all(np.array_equal(getattr(one, name), getattr(other, name)) for name in names)
@@ -49,37 +46,39 @@ def files(folder: Path) -> list[Path]:
     return sorted(path for path in folder.rglob("*") if path.is_file())
 
 
-def test_a_patch_is_rendered_once(tmp_path: Path, renderer: CountingRenderer) -> None:
+def test_a_view_is_rendered_once(tmp_path: Path, renderer: CountingRenderer) -> None:
     scenes = [make_scene(0), make_scene(1)]
     cache = ViewCache(tmp_path, renderer)
-    cache.fill(scenes)
-    cache.fill(scenes)
-    first = cache[scenes[0]]
+    cache.fill(scenes, with_patches=True)
+    cache.fill(scenes, with_patches=True)
+    cache.fill(scenes, with_patches=False)
+    first = cache.patch(scenes[0]), cache.cloud(scenes[0])
+    again = ViewCache(tmp_path, renderer)
+    assert np.array_equal(again.patch(scenes[0]), first[0])
+    assert same_cloud(again.cloud(scenes[0]), first[1])
     assert renderer.calls == 2
-    again = ViewCache(tmp_path, renderer)[scenes[0]]
-    assert renderer.calls == 2
-    assert are_equal(first, again)
 
 
-def test_what_is_kept_is_the_patch_in_half_precision(tmp_path: Path, renderer: CountingRenderer) -> None:
+def test_what_is_kept_is_the_cloud_and_the_patch_in_half_precision(
+    tmp_path: Path, renderer: CountingRenderer
+) -> None:
     scene, cache = make_scene(0), ViewCache(tmp_path, renderer)
     observation = renderer(scene)
-    view = object_view(observation, segment(observation, SegmentationSettings()))
-    halves = replace(view, channels=view.channels.astype(np.float16))
-    assert are_equal(cache[scene], halves)  # made now
-    assert are_equal(cache[scene], halves)  # from its file
+    cloud = object_cloud(segment(observation, SegmentationSettings()))
+    patch = object_patch(observation, cloud.centre(observation.camera)).astype(np.float16)
+    for _ in ("made now", "from its file"):
+        assert np.array_equal(cache.patch(scene), patch)
+        assert same_cloud(cache.cloud(scene), cloud)
 
 
-def test_a_cloud_is_read_without_its_patch(tmp_path: Path, renderer: CountingRenderer) -> None:
-    scene, cache = make_scene(0), ViewCache(tmp_path, renderer)
-    whole = cache[scene]
-    path = cache.path(scene)
-    path.write_bytes(path.read_bytes()[:CLOUD_BYTES])
-    assert same_cloud(cache.cloud(scene), whole.cloud)
-    assert renderer.calls == 1
-    path.write_bytes(path.read_bytes()[: CLOUD_BYTES - 1])
-    assert same_cloud(cache.cloud(scene), whole.cloud)
-    assert renderer.calls == 2
+def test_clouds_alone_take_little_space(tmp_path: Path, renderer: CountingRenderer) -> None:
+    scene, cache = make_scene(0), ViewCache(tmp_path, renderer, max_gigabytes=1.5 * CLOUD_BYTES / 1e9)
+    cache.fill([scene], with_patches=False)
+    assert [path.stat().st_size for path in files(tmp_path)] == [CLOUD_BYTES]
+    assert cache.holds(scene, with_patch=False)
+    assert not cache.holds(scene, with_patch=True)
+    with pytest.raises(InputError, match="max_gigabytes"):
+        cache.fill([scene], with_patches=True)
 
 
 def damaged(content: bytes) -> dict[str, bytes]:
@@ -87,19 +86,20 @@ def damaged(content: bytes) -> dict[str, bytes]:
     return {
         "emptied": b"",
         "cut off": content[:1000],
-        "cut off after the cloud": content[:CLOUD_BYTES],
-        "altered cloud": content[:5000] + bytes([content[5000] ^ 1]) + content[5001:],
-        "altered patch": content[:-5000] + bytes([content[-5000] ^ 1]) + content[-4999:],
+        "without its last byte": content[:-1],
+        "altered": content[:5000] + bytes([content[5000] ^ 1]) + content[5001:],
+        "altered checksum": bytes([content[0] ^ 1]) + content[1:],
     }
 
 
+@pytest.mark.parametrize("part", get_args(Part))
 @pytest.mark.parametrize("damage", [*damaged(b""), "deleted", "folder deleted"])
 def test_a_file_that_is_damaged_or_gone_is_made_again(
-    tmp_path: Path, renderer: CountingRenderer, damage: str
+    tmp_path: Path, renderer: CountingRenderer, damage: str, part: Part
 ) -> None:
     scene, cache = make_scene(0), ViewCache(tmp_path, renderer)
-    patch = cache[scene]
-    path = cache.path(scene)
+    cache.make(scene, with_patch=True)
+    path = cache.path(scene, part)
     content = path.read_bytes()
     if damage == "folder deleted":
         shutil.rmtree(tmp_path)
@@ -107,10 +107,10 @@ def test_a_file_that_is_damaged_or_gone_is_made_again(
         path.unlink()
     else:
         path.write_bytes(damaged(content)[damage])
-    assert are_equal(cache[scene], patch)
+    made = {"cloud": cache.cloud, "patch": cache.patch}[part](scene)
     assert renderer.calls == 2
     assert path.read_bytes() == content
-    assert files(tmp_path) == [path]
+    assert made is not None
 
 
 def test_deleting_the_folder_during_a_filling_does_no_harm(tmp_path: Path) -> None:
@@ -121,23 +121,24 @@ def test_deleting_the_folder_during_a_filling_does_no_harm(tmp_path: Path) -> No
 
     scenes = [make_scene(number) for number in range(3)]
     cache = ViewCache(tmp_path / "cache", Deleting())
-    cache.fill(scenes)
-    assert files(tmp_path)[0] in [cache.path(scene) for scene in scenes]
-    assert len(files(tmp_path)) == 1
+    cache.fill(scenes, with_patches=True)
+    kept = [cache.path(scene, part) for scene in scenes for part in get_args(Part)]
+    assert len(files(tmp_path)) == 2
+    assert set(files(tmp_path)) <= set(kept)
 
 
 def test_an_interrupted_filling_goes_on(tmp_path: Path, renderer: CountingRenderer) -> None:
-    def stops(cache: ViewCache, scenes: list[Scene]) -> Iterator[Scene]:
+    def stops(cache: ViewCache, scenes: Sequence[Scene], *, with_patches: bool) -> Iterator[Scene]:
         for scene in scenes[:2]:
-            cache.make(scene)
+            cache.make(scene, with_patch=with_patches)
             yield scene
         raise KeyboardInterrupt
 
     scenes = [make_scene(number) for number in range(4)]
     with pytest.raises(KeyboardInterrupt):
-        ViewCache(tmp_path, renderer, maker=stops).fill(scenes)
-    assert len(files(tmp_path)) == 2
-    ViewCache(tmp_path, renderer).fill(scenes)
+        ViewCache(tmp_path, renderer, maker=stops).fill(scenes, with_patches=True)
+    assert len(files(tmp_path)) == 4
+    ViewCache(tmp_path, renderer).fill(scenes, with_patches=True)
     assert renderer.calls == 4
 
 
@@ -149,32 +150,33 @@ def test_the_least_recently_used_go_when_the_bound_is_reached(
     bound = 5.5 * size
     cache = ViewCache(tmp_path / "cache", renderer, max_gigabytes=bound / 1e9)
     for age, scene in enumerate(scenes):
-        cache.make(scene)
-        os.utime(cache.path(scene), (age, age))
+        cache.make(scene, with_patch=True)
+        for part in get_args(Part):
+            os.utime(cache.path(scene, part), (age, age))
         if age == 3:
-            cache[scenes[0]]  # used again
+            cache.patch(scenes[0])  # used again
         assert sum(path.stat().st_size for path in files(tmp_path / "cache")) <= bound
-    kept = [number for number, scene in enumerate(scenes) if cache.path(scene).exists()]
+    kept = [number for number, scene in enumerate(scenes) if cache.path(scene, "patch").exists()]
     assert {0, 7, 8} <= set(kept)
     assert 1 not in kept
 
 
 def largest_file(folder: Path, renderer: CountingRenderer, scenes: list[Scene]) -> int:
-    """Bytes of the largest patch."""
+    """Bytes of the largest view."""
     cache = ViewCache(folder, renderer)
     for scene in scenes:
-        cache.make(scene)
-    return max(path.stat().st_size for path in files(folder))
+        cache.make(scene, with_patch=True)
+    return max(path.stat().st_size for path in files(folder)) + CLOUD_BYTES
 
 
 def test_more_scenes_than_the_cache_may_hold_are_refused(tmp_path: Path, renderer: CountingRenderer) -> None:
-    cache = ViewCache(tmp_path, renderer, max_gigabytes=1.5 * TYPICAL_BYTES / 1e9)
+    cache = ViewCache(tmp_path, renderer, max_gigabytes=1.5 * TYPICAL_PATCH_BYTES / 1e9)
     with pytest.raises(InputError, match="2 scenes"):
-        cache.fill([make_scene(0), make_scene(1)])
+        cache.fill([make_scene(0), make_scene(1)], with_patches=True)
     assert renderer.calls == 0
 
 
-def test_the_name_follows_everything_that_the_patch_depends_on(tmp_path: Path) -> None:
+def test_the_name_follows_everything_that_the_view_depends_on(tmp_path: Path) -> None:
     scene = make_scene(0)
     T_moved = scene.T_world_object.copy()
     T_moved[0, 3] = np.nextafter(T_moved[0, 3], 1)
@@ -186,8 +188,8 @@ def test_the_name_follows_everything_that_the_patch_depends_on(tmp_path: Path) -
         replace(scene, camera=replace(scene.camera, fx=300.0)),
     ]
     segmentation = SegmentationSettings(min_height_m=0.01)
-    paths = {ViewCache(tmp_path, CountingRenderer()).path(one) for one in scenes}
-    paths.add(ViewCache(tmp_path, CountingRenderer("boxes 2")).path(scene))
-    paths.add(ViewCache(tmp_path, CountingRenderer(), segmentation=segmentation).path(scene))
+    paths = {ViewCache(tmp_path, CountingRenderer()).path(one, "patch") for one in scenes}
+    paths.add(ViewCache(tmp_path, CountingRenderer("boxes 2")).path(scene, "patch"))
+    paths.add(ViewCache(tmp_path, CountingRenderer(), segmentation=segmentation).path(scene, "patch"))
     assert len(paths) == 7
-    assert ViewCache(tmp_path, CountingRenderer()).path(make_scene(0)) in paths
+    assert ViewCache(tmp_path, CountingRenderer()).path(make_scene(0), "patch") in paths

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from preshape.geometry.camera import Camera
 from preshape.perception.image import eight_channel_image
-from preshape.perception.object_view import CLOUD_SIZE, PATCH_SIZE, object_cloud, object_patch, object_view
+from preshape.perception.object_view import CLOUD_SIZE, PATCH_SIZE, object_cloud, object_patch
 from preshape.perception.observation import Observation
 from preshape.perception.segmentation import SegmentationSettings, SegmentedObject, segment
 
@@ -42,14 +42,14 @@ def test_patch_is_the_image_around_its_centre(u: float, v: float, size: int) -> 
 def test_the_object_is_in_the_middle_of_its_patch(table_top: Any, place: tuple[float, float]) -> None:
     observation = table_top.view(table_top.box((0.1, 0.06, 0.2), place), noise_seed=0)
     segmented = segment(observation, SegmentationSettings())
-    view = object_view(observation, segmented)
-    centre = view.cloud.centre(observation.camera)
+    centre = object_cloud(segmented).centre(observation.camera)
+    patch = object_patch(observation, centre)
     rows, columns = np.nonzero(segmented.mask)
     assert abs(rows.mean() - centre[1]) < 20
     assert abs(columns.mean() - centre[0]) < 10
     half, u, v = PATCH_SIZE // 2, round(centre[0]), round(centre[1])
     seen = observation.rgb[v, u].astype(np.float32) / 255
-    np.testing.assert_array_equal(view.channels[:3, half, half], seen)
+    np.testing.assert_array_equal(patch[:3, half, half], seen)
 
 
 @pytest.mark.parametrize("pixels", [200, CLOUD_SIZE, 5000])

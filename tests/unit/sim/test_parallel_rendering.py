@@ -1,4 +1,4 @@
-"""Worker processes make the same patches as one process, whatever else fills the cache."""
+"""Worker processes make the same views as one process, whatever else fills the cache."""
 
 from pathlib import Path
 
@@ -21,17 +21,19 @@ def _workers_for_few_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in folder.rglob("*.view")}
+    return {path.name: path.read_bytes() for path in folder.rglob("*.*")}
 
 
-def test_parallel_equals_serial(tmp_path: Path) -> None:
-    ViewCache(tmp_path / "serial", BoxRenderer()).fill(SCENES)
+@pytest.mark.parametrize("with_patches", [True, False])
+def test_parallel_equals_serial(tmp_path: Path, with_patches: bool) -> None:
+    ViewCache(tmp_path / "serial", BoxRenderer()).fill(SCENES, with_patches=with_patches)
     cache = ViewCache(tmp_path / "parallel", BoxRenderer(), maker=ParallelRendering(workers=2))
-    kept = cache.make(SCENES[0]), cache.path(SCENES[0]).stat().st_ino
-    cache.fill(SCENES)
+    cache.make(SCENES[0], with_patch=with_patches)
+    kept = cache.path(SCENES[0], "cloud").stat().st_ino
+    cache.fill(SCENES, with_patches=with_patches)
     assert contents(tmp_path / "parallel") == contents(tmp_path / "serial")
-    assert len(contents(tmp_path / "serial")) == len(SCENES)
-    assert cache.path(SCENES[0]).stat().st_ino == kept[1]  # what is there is not made again
+    assert len(contents(tmp_path / "serial")) == len(SCENES) * (2 if with_patches else 1)
+    assert cache.path(SCENES[0], "cloud").stat().st_ino == kept  # what is there is not made again
 
 
 class EmptyTable(BoxRenderer):
@@ -46,4 +48,4 @@ class EmptyTable(BoxRenderer):
 def test_bad_input_comes_out_of_the_workers(tmp_path: Path) -> None:
     cache = ViewCache(tmp_path, EmptyTable(), maker=ParallelRendering(workers=2))
     with pytest.raises(InputError, match="No object stands on the table"):
-        cache.fill(SCENES)
+        cache.fill(SCENES, with_patches=True)
