@@ -114,8 +114,9 @@ class SuccessLearning(GraspLightningModule):
         return logits
 
     def loss(self, batch: GraspBatch) -> Float[Tensor, ""]:
-        """Cross entropy of a batch."""
-        return binary_cross_entropy_with_logits(self(batch), batch.label)
+        """Cross entropy of a batch; where there are several networks in one, the mean of theirs."""
+        logits = self.model.member_logits(batch.view, batch.theta)
+        return binary_cross_entropy_with_logits(logits, batch.label.expand_as(logits))
 
     def validation_step(self, batch: GraspBatch) -> None:
         """Collect the logits of the validation trials."""

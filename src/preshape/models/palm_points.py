@@ -1,12 +1,15 @@
 """Palm points: a network that sees the object's points as the palm would."""
 
+from functools import partial
+
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
-from torch.nn.functional import linear, normalize
+from torch.nn.functional import normalize
 
 from preshape.geometry.pose import rotation_from_euler_xyz
-from preshape.models.success_model import SuccessModel, xavier_weights
+from preshape.models.ensemble import MemberLinear, logit_of_mean
+from preshape.models.success_model import SuccessModel
 from preshape.perception.view_batch import ViewBatch
 
 LENGTH_M = 0.1
@@ -16,7 +19,7 @@ SURROUNDINGS = 7
 
 
 class PalmPoints(SuccessModel):
-    """Points of the object in the frame of the palm, pooled by their maximum; 11,009 parameters for d = 14.
+    """Points of the object in the frame of the palm, pooled by their maximum; 55,045 parameters for d = 14.
 
     Whether a grasp lifts depends on where the object is relative to the hand, and not on where both are in
     the image. So the points p of the object's visible surface are taken into the palm's frame,
@@ -26,13 +29,15 @@ class PalmPoints(SuccessModel):
     smooth function of theta, so that gradients with respect to a grasp are exact and cheap. Colours are not
     looked at.
 
-    In training each batch sees another random part of the points.
+    There are several such networks (`preshape.models.ensemble`), which all see the same. In training each
+    batch sees another random part of the points.
 
     Args:
         name, grasp_space, theta_dim: see `GraspNetwork`.
         points: number of points that are looked at.
         width: units of the first layer of each point; the second has twice as many.
         keep_prob: probability with which dropout keeps a unit of the fully connected layers.
+        members: number m of networks.
     """
 
     looks_at = ("points", "table")
@@ -46,24 +51,26 @@ class PalmPoints(SuccessModel):
         points: int = 128,
         width: int = 32,
         keep_prob: float = 0.9,
+        members: int = 5,
     ) -> None:
         super().__init__(name, grasp_space, theta_dim)
         self.points = points
         drop = 1.0 - keep_prob
         context = theta_dim - 6 + SURROUNDINGS
-        self.context_channel = nn.Sequential(nn.Linear(context, 32), nn.ReLU(), nn.Linear(32, width))
-        self.point_channel = nn.Linear(3, width, bias=False)
-        self.pooled_channel = nn.Linear(width, 2 * width)
+        layer = partial(MemberLinear, members)
+        self.context_channel = nn.Sequential(layer(context, 32), nn.ReLU(), layer(32, width))
+        self.point_channel = layer(3, width, bias=False)
+        self.pooled_channel = layer(width, 2 * width, bias=False)
+        self.pooled_bias = nn.Parameter(torch.zeros(members, 1, 2 * width))
         self.joint_channel = nn.Sequential(
-            nn.Linear(2 * width + context, 64),
+            layer(2 * width + context, 64),
             nn.ReLU(),
             nn.Dropout(drop),
-            nn.Linear(64, 32),
+            layer(64, 32),
             nn.ReLU(),
             nn.Dropout(drop),
-            nn.Linear(32, 1),
+            layer(32, 1),
         )
-        self.apply(xavier_weights)
 
     def features(self, view: ViewBatch) -> ViewBatch:
         """The views with the points that are looked at."""
@@ -73,17 +80,27 @@ class PalmPoints(SuccessModel):
 
     def raw_head(self, features: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "b"]:
         """Logits of b grasps before calibration, from b views or from one that they share."""
+        return logit_of_mean(self._each(features, theta))
+
+    def member_logits(
+        self, view: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]
+    ) -> Float[Tensor, "m b"]:
+        """Logits of b grasps, each in its own view, by each of the m networks, before calibration."""
+        return self._each(self.features(view), theta)
+
+    def _each(self, features: ViewBatch, theta: Float[Tensor, "b d"]) -> Float[Tensor, "m b"]:
         palm, rotation = theta[:, :3], rotation_from_euler_xyz(theta[:, 3:6])
         context = self._context(features.table, theta, rotation)
         # W q + c of all points p, with W q = W R^T p - W R^T t: points of a shared view are not copied.
-        turned = self.point_channel.weight @ rotation.mT / LENGTH_M
+        turned = self.point_channel.weight[:, None] @ rotation.mT / LENGTH_M
         moved = self.context_channel(context) - (turned @ palm[..., None])[..., 0]
-        each = torch.relu(features.points @ turned.mT + moved[:, None])
+        each = torch.relu(features.points @ turned.mT + moved[:, :, None])
         # Bias and ReLU keep the order, so they can wait for the maximum, which leaves them less to do.
-        highest = linear(each, self.pooled_channel.weight).amax(dim=1)
-        pooled = torch.relu(highest + self.pooled_channel.bias)
-        logits: Tensor = self.joint_channel(torch.cat((pooled, context), dim=1))
-        return logits.squeeze(1)
+        highest = (each @ self.pooled_channel.weight.mT[:, None]).amax(dim=2)
+        pooled = torch.relu(highest + self.pooled_bias)
+        known = torch.cat((pooled, context.expand(len(pooled), -1, -1)), dim=2)
+        logits: Tensor = self.joint_channel(known)
+        return logits.squeeze(2)
 
     def _context(
         self, table: Float[Tensor, "f 4"], theta: Float[Tensor, "b d"], rotation: Float[Tensor, "b 3 3"]

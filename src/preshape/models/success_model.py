@@ -114,6 +114,12 @@ class SuccessModel(GraspNetwork, ABC):
         """Logits of grasps theta (camera frame, m and rad), each in its own view."""
         return self.head(self.features(view), theta)
 
+    def member_logits(
+        self, view: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]
+    ) -> Float[Tensor, "m b"]:
+        """Logits before calibration of each of the m networks that this one consists of, to learn from."""
+        return self.raw_head(self.features(view), theta)[None]
+
     def calibrate(self, *, logit_shift: float, temperature: float) -> None:
         """Set how logits are moved, and then divided, from now on."""
         self.logit_shift.fill_(logit_shift)

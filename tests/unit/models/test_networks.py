@@ -7,10 +7,12 @@ import torch
 from scipy.spatial.transform import Rotation
 from synthetic_views import view_of
 from torch import Tensor
+from torch.nn.functional import binary_cross_entropy_with_logits
 
 from preshape.hands.allegro import allegro_hand
 from preshape.hands.kinematics import HandKinematics
 from preshape.models.config_cnn import ConfigCNN
+from preshape.models.ensemble import logit_of_mean
 from preshape.models.palm_points import PalmPoints
 from preshape.models.patches_cnn import PatchesCNN
 from preshape.models.regression_cnn import RegressionCNN
@@ -204,3 +206,28 @@ def test_palm_points_sees_other_points_in_every_batch_of_a_training(view: ViewBa
     model = PalmPoints(*SPACE, keep_prob=1.0)
     assert not torch.equal(model.train()(view, theta), model(view, theta))
     assert torch.equal(model.eval()(view, theta), model(view, theta))
+
+
+def test_members_learn_by_themselves_and_their_probabilities_are_averaged(
+    view: ViewBatch, theta: Tensor
+) -> None:
+    torch.manual_seed(0)
+    model = PalmPoints(*SPACE, members=3).eval()
+    logits = model.member_logits(view, theta)
+    torch.testing.assert_close(torch.sigmoid(model(view, theta)), torch.sigmoid(logits).mean(dim=0))
+    binary_cross_entropy_with_logits(logits[1], torch.ones(2)).backward()
+    gradients = [parameter.grad for parameter in model.parameters() if parameter.grad is not None]
+    assert len(gradients) == len(list(model.parameters()))
+    for gradient in gradients:
+        assert not gradient[[0, 2]].any()
+    assert any(gradient[1].any() for gradient in gradients)
+    assert not torch.allclose(logits[0], logits[1])
+
+
+@pytest.mark.parametrize("logit", [-200.0, -3.0, 0.0, 40.0, 200.0])
+def test_the_mean_of_equal_probabilities_is_theirs_however_sure_they_are(logit: float) -> None:
+    logits = torch.full((5, 1), logit, requires_grad=True)
+    mean = logit_of_mean(logits)
+    torch.testing.assert_close(mean, torch.tensor([logit]))
+    mean.sum().backward()
+    torch.testing.assert_close(logits.grad, torch.full((5, 1), 0.2))
