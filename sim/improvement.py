@@ -117,19 +117,19 @@ def _train(cfg: DictConfig, data: Path, folder: Path) -> dict[str, Any]:
 
 
 def _acquire(cfg: DictConfig, weights: Path, number: int, place: Path) -> PlannerSummary:
-    """Execute grasps on objects that are not tested, and keep them in `place/acquired`."""
+    """Execute grasps on objects that may be learned from, and keep them in `place/acquired`."""
     name = cfg.acquisition.name
-    names = instantiate(cfg.objects.set).names
+    held_out = (cfg.objects.test or ()) if cfg.split == "objects" else ()
+    learned = [known for known in instantiate(cfg.objects.set).names if known not in held_out]
     settings = {
         "scenes": cfg.acquired_scenes,
         "seed": cfg.acquired_seed + number - 1,
         "poses_per_object": None,
         "every_grasp_of": [name],
     }
-    others = [known for known in names if known not in (cfg.objects.test or ())]
     stage = _stage(
         cfg,
-        {"weights": str(weights), "evaluate": settings, "laboratory": {"scenes": {"only": others}}},
+        {"weights": str(weights), "evaluate": settings, "laboratory": {"scenes": {"only": learned}}},
         planners={name: OmegaConf.to_container(cfg.acquisition, resolve=True)},
     )
     log.info("Acquiring grasps by %s on %d scenes", name, cfg.acquired_scenes)

@@ -4,7 +4,10 @@ import hashlib
 import re
 from collections.abc import Sequence
 
-NAMED_ELSEWHERE = ("run_name", "experiment", "split", "fold", "hydra", "paths", "tracking")
+NAMED_ELSEWHERE = (
+    *("run_name", "experiment", "split", "fold", "hydra", "paths", "tracking"),
+    "retrain_after_code_changes",
+)
 """Overrides that do not tell groups apart, or that the names tell already."""
 LONGEST = 80
 

@@ -36,7 +36,7 @@ class ViewCache:
     """Object views of scenes: for each a small file with the cloud and a large one with the patch.
 
     Networks that do not look at patches need neither the large files nor the time that they take. A file's
-    name is the digest of everything that the view is a function of: the scene, the renderer, the
+    name is the digest of everything that the view is a function of: the scene but its number, the renderer, the
     segmentation and the code. So a file is never out of date, only unused. Several processes may share the
     folder, and it may be deleted while they do.
 
@@ -139,7 +139,9 @@ class ViewCache:
         return [self._renderer.fingerprint, asdict(self._segmentation), source_digest(__name__)]
 
     def _name(self, scene: Scene, part: Part) -> str:
-        text = json.dumps([asdict(scene), self._origin], sort_keys=True, default=np.ndarray.tolist)
+        # Its number changes when tables are joined, its image does not.
+        seen = {key: value for key, value in asdict(scene).items() if key != "scene_id"}
+        text = json.dumps([seen, self._origin], sort_keys=True, default=np.ndarray.tolist)
         return f"{hashlib.sha256(text.encode()).hexdigest()}.{part}"
 
 

@@ -26,9 +26,9 @@ class ShowProgress(Callback):
         self._loss = float("nan")
 
     def on_train_start(self, trainer: lightning.Trainer, pl_module: lightning.LightningModule) -> None:
-        """Begin with the iterations that are still to do."""
-        left = int(trainer.max_steps) - trainer.global_step
-        self._progress = Progress("Training", left, "iterations").__enter__()
+        """Begin where an interrupted training ended."""
+        total, done = int(trainer.max_steps), trainer.global_step
+        self._progress = Progress("Training", total, "iterations", done=done).__enter__()
 
     def on_train_batch_end(
         self,

@@ -193,3 +193,4 @@ def test_the_name_follows_everything_that_the_view_depends_on(tmp_path: Path) ->
     paths.add(ViewCache(tmp_path, CountingRenderer(), segmentation=segmentation).path(scene, "patch"))
     assert len(paths) == 7
     assert ViewCache(tmp_path, CountingRenderer()).path(make_scene(0), "patch") in paths
+    assert ViewCache(tmp_path, CountingRenderer()).path(replace(scene, scene_id=5), "patch") in paths
