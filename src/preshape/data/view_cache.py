@@ -36,9 +36,9 @@ class ViewCache:
     """Object views of scenes: for each a small file with the cloud and a large one with the patch.
 
     Networks that do not look at patches need neither the large files nor the time that they take. A file's
-    name is the digest of everything that the view is a function of: the scene but its number, the renderer, the
-    segmentation and the code. So a file is never out of date, only unused. Several processes may share the
-    folder, and it may be deleted while they do.
+    name is the digest of everything that the view is a function of: the scene without its number, the
+    renderer, the segmentation and the code. So a file is never out of date, only unused. Several processes
+    may share the folder, and it may be deleted while they do.
 
     Args:
         folder: where the files lie.
