@@ -1,16 +1,24 @@
-"""A training step of config-CNN with the image channels last in memory, against channels first."""
+"""Training steps: their arithmetic, the layout of images in memory, and the share of reading the data."""
 
+import tempfile
 from collections.abc import Callable
+from dataclasses import replace
 
 import torch
 from comparison import Comparison, side_by_side
+from hydra import compose, initialize_config_dir
+from hydra.utils import instantiate
 from noise_views import noise_views
 from torch import Tensor
 from torch.nn.functional import binary_cross_entropy_with_logits
 
+import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
 from preshape.models.config_cnn import ConfigCNN
+from preshape.models.lightning_module import learning_of
+from preshape.paths import project_root
 
 BATCH, RUNS = 8, 7
+TRIALS = 100
 
 
 def channels_last_training(seed: int, flop_per_s: float) -> Comparison:
@@ -47,3 +55,38 @@ def channels_last_training(seed: int, flop_per_s: float) -> Comparison:
         RUNS,
         flop_per_s,
     )
+
+
+def palm_points_step(seed: int, flop_per_s: float) -> Comparison:
+    """A step of the default network, on a batch of its own size, and the reading of that batch."""
+    return _step_and_reading("palm_points", seed, flop_per_s)
+
+
+def config_cnn_step(seed: int, flop_per_s: float) -> Comparison:
+    """A step of the paper's network, and the reading of its batch from the cache."""
+    return _step_and_reading("config_cnn", seed, flop_per_s)
+
+
+def _step_and_reading(model: str, seed: int, flop_per_s: float) -> Comparison:
+    """A training step on shipped trials; beside it the reading of its batch, which a training adds to it."""
+    with tempfile.TemporaryDirectory() as cache:
+        overrides = [f"model={model}", f"paths.cache={cache}", f"dataset.data.trials={TRIALS}"]
+        with initialize_config_dir(str(project_root() / "conf"), version_base="1.3"):
+            cfg = compose("train", [*overrides, "dataset.data.hold_out.validation_fraction=0"])
+        torch.manual_seed(seed)
+        data, network = instantiate(cfg.dataset.data), instantiate(cfg.model)
+        data.setup()
+        data.render(with_patches="patch" in network.looks_at)
+        learning = learning_of(network, instantiate(cfg.learning.settings))
+        optimizer = torch.optim.AdamW(network.parameters())
+        batches = iter(data.train_dataloader())
+        batch = next(batches)
+
+        def step() -> None:
+            optimizer.zero_grad()
+            learning.loss(batch).backward()
+            optimizer.step()
+
+        name = f"training step of {model}, batch {cfg.learning.batch_size}"
+        both = side_by_side(name, step, "reading its batch", lambda: next(batches), RUNS, flop_per_s)
+    return replace(both, details={"share_of_reading": both.peer_s / (both.ours_s + both.peer_s)})
