@@ -62,14 +62,15 @@ def _success_row(label: str, split: str, run: LearningRun | None) -> list[str]:
 
 
 def _baseline_rows(runs: Runs, groups: Sequence[str]) -> list[list[str]]:
-    """What knows nothing, on the test trials of the first network that was run."""
+    """What knows nothing, on the test trials of the network that was run on most folds."""
     known = [runs[group, split] for split in SPLITS for group in groups if (group, split) in runs]
     if not known:
         return []
-    figures = known[0].figures()
+    fullest = max(known, key=lambda run: len(run.folds))
+    figures = fullest.figures()
     return [
         [
-            *(f"{name} baseline", known[0].split, str(len(known[0].folds))),
+            *(f"{name} baseline", fullest.split, str(len(fullest.folds))),
             *(f"{figures['n']:,}", f"{figures['positives']:,}"),
             *(_spread(values[metric]) for metric in METRICS),
             "",
@@ -188,7 +189,9 @@ def _headline(run: LearningRun | None) -> str:
 
 
 def _spread(values: Mapping[str, Any]) -> str:
-    return f"{values['mean']:.3f} ± {values['std']:.3f}"
+    """Mean and, of several folds, their standard deviation."""
+    mean = f"{values['mean']:.3f}"
+    return mean if len(values["folds"]) == 1 else f"{mean} ± {values['std']:.3f}"
 
 
 def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:

@@ -23,8 +23,9 @@ def sweep_group(run_name: str, overrides: Sequence[str]) -> str:
         overrides: what was chosen for this job, such as `model=config_cnn`, `fold=3`.
     """
     chosen = dict(override.lstrip("+~").partition("=")[::2] for override in sorted(overrides))
-    left_out = NAMED_ELSEWHERE if "run_name" in chosen else (*NAMED_ELSEWHERE, "model")
-    rest = {key: value for key, value in chosen.items() if re.split(r"[.@/]", key)[0] not in left_out}
+    if "run_name" not in chosen:
+        chosen.pop("model", None)  # but not model.members=1, which is another network of the same name
+    rest = {key: value for key, value in chosen.items() if re.split(r"[.@/]", key)[0] not in NAMED_ELSEWHERE}
     parts = [run_name, *(f"{key.rpartition('.')[2]}={value}" for key, value in rest.items())]
     name = re.sub(r"[^\w.=,+-]", "-", ",".join(parts))
     if len(name) <= LONGEST and len({key.rpartition(".")[2] for key in rest}) == len(rest):

@@ -8,6 +8,7 @@ def test_a_group_is_the_run_and_what_else_was_chosen() -> None:
     assert sweep_group("paper_config_cnn", fold) == "paper_config_cnn"
     assert sweep_group("config_cnn", [*fold, "retrain_after_code_changes=false"]) == "config_cnn"
     assert sweep_group("config_cnn", [*fold, "dataset.data.trials=500"]) == "config_cnn,trials=500"
+    assert sweep_group("config_cnn", [*fold, "model.members=1"]) == "config_cnn,members=1"
     assert sweep_group("mine", [*fold, "run_name=mine"]) == "mine,model=config_cnn"
     assert "/" not in sweep_group("config_cnn", ["weights=a/b"])
 

@@ -47,7 +47,7 @@ def train_fold(
 
 def test_a_sweep_summarises_its_folds_and_trains_them_once(data_folder: Path, tmp_path: Path) -> None:
     group = tmp_path / "tiny"
-    assert "(1 folds)" in train_fold(group, data_folder, 0)
+    assert "(1 fold)" in train_fold(group, data_folder, 0)
     assert "(2 folds)" in train_fold(group, data_folder, 1)
     summary = read_json(group / "summary.json")
     seen = summary["splits"]["seen"]

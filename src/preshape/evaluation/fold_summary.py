@@ -173,4 +173,6 @@ def _headline(split: str, figures: Mapping[str, Any]) -> str:
     name, unit = ("auc", "") if "auc" in metrics else ("palm_m", " m")
     value = metrics[name]
     words = {"auc": "AUC", "palm_m": "palm off by"}[name]
+    if folds == 1:
+        return f"{split}: {words} {value['mean']:.3f}{unit} (1 fold)"
     return f"{split}: {words} {value['mean']:.3f} ± {value['std']:.3f}{unit} ({folds} folds)"
