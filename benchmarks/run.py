@@ -9,7 +9,7 @@ from comparison import as_row
 from machine import describe_machine, matrix_product_rate
 from planning_speed import planning_comparisons
 from rendering_speed import rendering
-from training_speed import channels_last_training, config_cnn_step, palm_points_step
+from training_speed import TRAINING_COMPARISONS
 
 from preshape.files import write_json
 from preshape.paths import project_root
@@ -28,8 +28,7 @@ def main() -> None:
     rate = matrix_product_rate()
     log.info("Matrix products: %.1f GFLOP/s", rate / 1e9)
     rows = []
-    training = (channels_last_training, config_cnn_step, palm_points_step)
-    for compare in (*planning_comparisons(), *training, collection, rendering):
+    for compare in (*planning_comparisons(), *TRAINING_COMPARISONS, collection, rendering):
         log.info("%s", comparison := compare(SEED, rate))
         rows.append(as_row(comparison))
     machine = describe_machine() | {"matrix_product_gflop_per_s": rate / 1e9}

@@ -18,7 +18,7 @@ from preshape.models.lightning_module import learning_of
 from preshape.paths import project_root
 
 BATCH, RUNS = 8, 7
-TRIALS = 100
+TRIALS = 120
 
 
 def channels_last_training(seed: int, flop_per_s: float) -> Comparison:
@@ -72,7 +72,7 @@ def _step_and_reading(model: str, seed: int, flop_per_s: float) -> Comparison:
     with tempfile.TemporaryDirectory() as cache:
         overrides = [f"model={model}", f"paths.cache={cache}", f"dataset.data.trials={TRIALS}"]
         with initialize_config_dir(str(project_root() / "conf"), version_base="1.3"):
-            cfg = compose("train", [*overrides, "dataset.data.hold_out.validation_fraction=0"])
+            cfg = compose("train", overrides)
         torch.manual_seed(seed)
         data, network = instantiate(cfg.dataset.data), instantiate(cfg.model)
         data.setup()
@@ -90,3 +90,6 @@ def _step_and_reading(model: str, seed: int, flop_per_s: float) -> Comparison:
         name = f"training step of {model}, batch {cfg.learning.batch_size}"
         both = side_by_side(name, step, "reading its batch", lambda: next(batches), RUNS, flop_per_s)
     return replace(both, details={"share_of_reading": both.peer_s / (both.ours_s + both.peer_s)})
+
+
+TRAINING_COMPARISONS = (channels_last_training, config_cnn_step, palm_points_step)
