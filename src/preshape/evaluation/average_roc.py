@@ -74,7 +74,8 @@ def average_roc_figure(
     figure = Figure(figsize=(5.2, 5.2), layout="constrained")
     axes = figure.subplots()
     for (colour, line), (name, curve) in zip(STYLES, curves.items(), strict=False):
-        area = f"{name}: AUC {curve.auc_mean:.3f} ± {curve.auc_std:.3f}, {curve.folds} folds"
+        deviation = f" ± {curve.auc_std:.3f}, {curve.folds} folds" if curve.folds > 1 else ", 1 fold"
+        area = f"{name}: AUC {curve.auc_mean:.3f}{deviation}"
         beside = (references or {}).get(name)
         label = area if beside is None else f"{area} ({beside})"
         axes.plot(curve.false_positives, curve.mean, color=colour, linestyle=line, label=label)
