@@ -70,8 +70,6 @@ class TrackCurves(Callback):
 
     def on_train_epoch_end(self, trainer: lightning.Trainer, pl_module: lightning.LightningModule) -> None:
         """One point on each curve."""
-        if self.points and self.points[-1]["iteration"] >= trainer.global_step:
-            return  # a training that goes on begins with the end of the epoch that it has behind it
         values = {name: float(value) for name, value in trainer.callback_metrics.items()}
         values["learning_rate"] = trainer.optimizers[0].param_groups[0]["lr"]
         self._run.log(values, trainer.global_step)
@@ -105,8 +103,8 @@ class KeepBest(Callback):
             self._loss, self._iteration = loss, trainer.global_step
             self._weights = {name: value.clone() for name, value in pl_module.state_dict().items()}
 
-    def on_train_end(self, trainer: lightning.Trainer, pl_module: lightning.LightningModule) -> None:
-        """Take the best weights."""
+    def on_fit_end(self, trainer: lightning.Trainer, pl_module: lightning.LightningModule) -> None:
+        """Take the best weights, also where an interrupted training had nothing left to do."""
         if self._weights:
             pl_module.load_state_dict(self._weights)
             log.info("Kept the weights of iteration %d, validation loss %.3f", self._iteration, self._loss)
@@ -138,3 +136,22 @@ class Resumable(Callback):
             return
         with atomic_path(self._path) as temporary:
             trainer.save_checkpoint(temporary)
+
+    def on_save_checkpoint(
+        self,
+        trainer: lightning.Trainer,
+        pl_module: lightning.LightningModule,
+        checkpoint: dict[str, Any],
+    ) -> None:
+        """Note that the epoch is over, which Lightning itself does a little later."""
+        for epochs in checkpoint["loops"]["fit_loop"]["epoch_progress"].values():
+            epochs["completed"] = epochs["processed"]
+
+    def on_train_start(self, trainer: lightning.Trainer, pl_module: lightning.LightningModule) -> None:
+        """Begin the next epoch as if nothing had happened.
+
+        Lightning looks for something to finish in the last one. Where there is no validation, it finds
+        another batch.
+        """
+        trainer.fit_loop.epoch_loop.restarting = False
+        trainer.fit_loop._resuming_from_checkpoint = False

@@ -38,14 +38,15 @@ def data(data_folder: Path) -> GraspDataModule:
 class CurvesInMemory(UntrackedRun):
     """Keeps the curves, and may interrupt the training."""
 
-    def __init__(self, interrupt_at: int | None = None) -> None:
+    def __init__(self, interrupt_at: int | None = None, before: str = "train_loss") -> None:
         self.steps: list[int] = []
         self.values: dict[str, float] = {}
         self.files: list[str] = []
-        self._interrupt_at = interrupt_at
+        self._interruption = interrupt_at, before
 
     def log(self, values: Mapping[str, float], step: int) -> None:
-        if step == self._interrupt_at:
+        iteration, before = self._interruption
+        if step == iteration and before in values:
             raise RuntimeError("the lights went out")
         self.steps.append(step)
         self.values.update(values)
@@ -66,13 +67,17 @@ def test_a_seed_decides_the_weights(data: GraspDataModule, tmp_path: Path) -> No
     assert first != other
 
 
-def test_an_interrupted_training_ends_with_the_same_weights(data: GraspDataModule, tmp_path: Path) -> None:
+@pytest.mark.parametrize("validation_fraction", [0.25, 0.0])
+def test_an_interrupted_training_ends_with_the_same_weights(
+    data_folder: Path, tmp_path: Path, validation_fraction: float
+) -> None:
+    data = make_data(data_folder, validation_fraction=validation_fraction)
     undisturbed = trained(data, tmp_path / "undisturbed")
     disturbed = tmp_path / "disturbed"
-    for step in (12, 18, 18):
+    for step, before in ((12, "train_loss"), (18, "train_loss"), (18, "train_loss"), (24, "test_auc")):
         with pytest.raises(RuntimeError, match="lights"):
-            trained(data, disturbed, run=CurvesInMemory(interrupt_at=step))
-        assert [path.suffix for path in disturbed.iterdir()] == [".ckpt"]
+            trained(data, disturbed, run=CurvesInMemory(step, before))
+        assert len(list(disturbed.glob("*.ckpt"))) == 1
     curves = CurvesInMemory()
     assert trained(data, disturbed, run=curves) == undisturbed
     assert 6 not in curves.steps
