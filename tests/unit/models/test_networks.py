@@ -88,6 +88,15 @@ def test_config_cnn_has_the_papers_number_of_parameters(hand: HandKinematics | N
     assert parameters(ConfigCNN(*SPACE, hand=hand)) == 61_065
 
 
+def test_config_cnn_is_the_papers_convolution_of_tiled_features(view: ViewBatch, theta: Tensor) -> None:
+    model = ConfigCNN(*SPACE).eval()
+    m = model.image_channel(model.normalize_patch(view.patch))
+    n = model.theta_channel(model.normalize_theta(theta))
+    joined = model.joint_convolution(torch.cat((m, n[:, :, None, None].expand(-1, -1, 25, 25)), dim=1))
+    logits = model.joint_channel(joined)[:, 0]
+    torch.testing.assert_close(model.raw_head(model.features(view), theta), logits, rtol=1e-4, atol=1e-5)
+
+
 def test_regression_has_the_papers_number_of_parameters() -> None:
     assert parameters(RegressionCNN(*SPACE)) == 90_934
 
