@@ -1,7 +1,7 @@
 """How far each start of a gradient ascent has come."""
 
 import numpy as np
-from jaxtyping import Float64, Int64
+from jaxtyping import Bool, Float64, Int64
 
 from preshape.planning.landscape import Landscape, Point
 from preshape.planning.result import PlanResult, PlanStatus, rank_by
@@ -19,7 +19,7 @@ class Climb:
         best: the best grasp of each start so far. Unless a barrier or a prior that is not climbed pushes it
             away, a start stands on it.
         step: with which the next line search of each start begins.
-        idle: how many of its last steps in a row gained no more than the tolerance.
+        idle: how many of its last steps in a row gained next to nothing.
         climbing: the starts that have not stopped.
         status: why the others have.
     """
@@ -46,7 +46,11 @@ class Climb:
         return tuple(tuple(probs) for probs in self._probs)
 
     def move(
-        self, rows: Int64[np.ndarray, "m"], to: Point, step: Float64[np.ndarray, "m"], tolerance: float
+        self,
+        rows: Int64[np.ndarray, "m"],
+        to: Point,
+        step: Float64[np.ndarray, "m"],
+        idle: Bool[np.ndarray, "m"],
     ) -> None:
         """Take an accepted step with some of the starts.
 
@@ -54,10 +58,9 @@ class Climb:
             rows: the starts.
             to: where they go.
             step: with which their next line search begins.
-            tolerance: a step that gains no more than this counts as idle.
+            idle: whether the step gains next to nothing.
         """
-        gain = to.height - self.here.height[rows]
-        self.idle[rows] = np.where(gain > tolerance, 0, self.idle[rows] + 1)
+        self.idle[rows] = np.where(idle, self.idle[rows] + 1, 0)
         self.here[rows] = to
         self.step[rows] = step
         better = (to.merit >= self.best.merit[rows]).nonzero()[0]
