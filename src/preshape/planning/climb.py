@@ -1,7 +1,7 @@
 """How far each start of a gradient ascent has come."""
 
 import numpy as np
-from jaxtyping import Bool, Float64, Int64
+from jaxtyping import Float64, Int64
 
 from preshape.planning.landscape import Landscape, Point
 from preshape.planning.result import PlanResult, PlanStatus, rank_by
@@ -45,22 +45,14 @@ class Climb:
         """Success probability of each start's best grasp before the climb and after each of its steps."""
         return tuple(tuple(probs) for probs in self._probs)
 
-    def move(
-        self,
-        rows: Int64[np.ndarray, "m"],
-        to: Point,
-        step: Float64[np.ndarray, "m"],
-        idle: Bool[np.ndarray, "m"],
-    ) -> None:
+    def move(self, rows: Int64[np.ndarray, "m"], to: Point, step: Float64[np.ndarray, "m"]) -> None:
         """Take an accepted step with some of the starts.
 
         Args:
             rows: the starts.
             to: where they go.
             step: with which their next line search begins.
-            idle: whether the step gains next to nothing.
         """
-        self.idle[rows] = np.where(idle, self.idle[rows] + 1, 0)
         self.here[rows] = to
         self.step[rows] = step
         better = (to.merit >= self.best.merit[rows]).nonzero()[0]

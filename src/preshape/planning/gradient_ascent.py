@@ -62,7 +62,8 @@ class GradientAscent:
         climb.stop(rows[~accepted], PlanStatus.NO_ASCENT)
         moved, found = rows[accepted], found[accepted.nonzero()[0]]
         gain = _worth(found.height - climb.here.height[moved], found)
-        climb.move(moved, found, step[accepted], idle=gain <= self.tolerance)
+        climb.idle[moved] = np.where(gain <= self.tolerance, climb.idle[moved] + 1, 0)
+        climb.move(moved, found, step[accepted])
         self._stop_where_flat(climb, moved, bounds)
 
     def _stop_where_flat(self, climb: Climb, rows: Int64[np.ndarray, "m"], bounds: Bounds) -> None:
@@ -95,4 +96,5 @@ def _worth(gain: Float64[np.ndarray, "s"], at: Point) -> Float64[np.ndarray, "s"
 
     Below a tenth they count as at a tenth. A climb from 10^-6 to 10^-5 leads nowhere, unless it goes on.
     """
-    return gain * at.success_prob.clip(min=0.1)
+    worth: Float64[np.ndarray, "s"] = gain * at.success_prob.clip(min=0.1)
+    return worth

@@ -46,7 +46,7 @@ class LbfgsPlanner:
 
         def descent(scaled: Float64[np.ndarray, "d"]) -> tuple[float, Float64[np.ndarray, "d"]]:
             point = landscape.at(box.project(scaled * unit))
-            climb.move(rows, point, np.zeros(1), 0.0)
+            climb.move(rows, point, np.zeros(1))
             return -float(point.height[0]), (-point.gradient * unit)[0]
 
         limits = list(zip((box.lower / unit)[0], (box.upper / unit)[0], strict=True))
