@@ -13,6 +13,7 @@ from preshape.errors import InputError
 from preshape.files import read_json, write_json
 from preshape.geometry.pose import rotation_from_euler_xyz
 from preshape.grasps.space import GraspSpace
+from preshape.perception.view_batch import ViewBatch
 from preshape.planning.objective import Evaluation, Objective
 
 FORMAT = "preshape-prior/1"
@@ -86,13 +87,17 @@ class GraspPrior:
         return cls(space.name, *(torch.from_numpy(part) for part in parts))
 
     def log_density(
-        self, theta: Float64[Tensor, "s d"], T_camera_box: Float64[Tensor, "4 4"]
+        self, theta: Float64[Tensor, "s d"], T_camera_box: Float64[Tensor, "#s 4 4"]
     ) -> Float64[Tensor, "s"]:
-        """Log density of grasps around a box, up to a constant; differentiable."""
-        offsets = in_box(theta, T_camera_box[None])[:, None] - self.means
+        """Log density of grasps around one box or each its own, up to a constant; differentiable."""
+        offsets = in_box(theta, T_camera_box)[:, None] - self.means
         whitened = (offsets[:, :, None] @ self.precisions)[:, :, 0]
         log_volume = self.precisions.diagonal(dim1=1, dim2=2).log().sum(dim=1)
         return torch.logsumexp(self.log_weights + log_volume - whitened.square().sum(dim=2) / 2, dim=1)
+
+    def in_view(self, view: ViewBatch) -> "GraspPrior":
+        """What it says of the object in a view: the same of every object."""
+        return self
 
     def write(self, path: str | Path) -> None:
         """Write the prior as JSON, atomically.
@@ -120,52 +125,13 @@ class GraspPrior:
             shapes = ((len(parts[0]),), (len(parts[0]), size), (len(parts[0]), size, size))
             if tuple(tuple(part.shape) for part in parts) != shapes:
                 raise ValueError("its parts do not fit together")
+            if not all(part.isfinite().all() for part in parts):
+                raise ValueError("it holds NaN or infinity")
             return cls(str(content["grasp_space"]), *parts)
         except (KeyError, TypeError, ValueError, IndexError) as error:
             raise InputError(
                 f"The prior is incomplete or damaged ({error})", where=path, fix=again
             ) from error
-
-
-@dataclass(frozen=True)
-class PriorChoice:
-    """Which prior a planner takes, and how much it counts.
-
-    Args:
-        file: what `python src/fit_prior.py` wrote; None for the paper's uniform prior.
-        weight: of the log prior against the log probability of success; 0 for the paper's maximum likelihood.
-
-    Raises:
-        InputError: if the weight is not 0 and there is no file.
-    """
-
-    file: str | None = None
-    weight: float = 0.0
-
-    def __post_init__(self) -> None:
-        if self.weight and self.file is None:
-            raise InputError(
-                "A prior has a weight, but no file",
-                where="prior.file",
-                fix="fit one with `python src/fit_prior.py`, or set prior.weight=0",
-            )
-
-    def joined_to(self, objective: Objective, space: GraspSpace, T_camera_box: np.ndarray) -> Objective:
-        """The objective with the prior of grasps around a box beside it.
-
-        Raises:
-            InputError: if the prior cannot be read, or is for another grasp space.
-        """
-        if self.file is None or not self.weight:
-            return objective
-        prior = GraspPrior.read(self.file)
-        if prior.grasp_space != space.name:
-            raise InputError(
-                f"The prior is for grasp space {prior.grasp_space!r}, not for {space.name!r}",
-                where=self.file,
-                fix="choose the robot whose grasps it was fitted to",
-            )
-        return PriorObjective(objective, prior, T_camera_box, self.weight)
 
 
 class PriorObjective(Objective):
@@ -186,7 +152,7 @@ class PriorObjective(Objective):
         weight: float,
     ) -> None:
         self._objective, self._prior, self._weight = objective, prior, weight
-        self._box = torch.from_numpy(T_camera_box)
+        self._box = torch.from_numpy(T_camera_box)[None]
 
     def evaluate(self, theta: Float64[Tensor, "s d"]) -> Evaluation:
         evaluation = self._objective.evaluate(theta)

@@ -23,7 +23,7 @@ from preshape.planning.grasp_plan import GraspPlan
 from preshape.planning.hand_clearance import HandClearance
 from preshape.planning.objective import Objective, SuccessObjective, UnknownSuccess
 from preshape.planning.planner import Planner
-from preshape.planning.prior import PriorChoice
+from preshape.planning.prior_choice import PriorChoice
 from preshape.planning.regression import RegressedGrasp
 
 
@@ -86,7 +86,8 @@ class ViewPlanner:
             said = self.proposer.grasp(view)
             nearest = int(np.linalg.norm(theta[:, :3] - said[:3], axis=1).argmin())
             theta, bounds, initial = said[None], bounds[np.array([nearest])], [initial[nearest]]
-        objective = self.prior.joined_to(self._likelihood(view), self.space, segmented.T_camera_box)
+        box = segmented.T_camera_box
+        objective = self.prior.joined_to(self._likelihood(view), self.space, view, box)
         if self.constraint is not None:
             objective = ConstrainedObjective(objective, self.constraint.in_view(segmented))
         result = self.method.plan(objective, theta, bounds)

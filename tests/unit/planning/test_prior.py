@@ -7,6 +7,7 @@ import pytest
 import torch
 from analytic_objectives import quadratic
 from scipy.spatial.transform import Rotation
+from synthetic_views import view_of
 
 from preshape.errors import InputError
 from preshape.files import read_json, write_json
@@ -15,7 +16,8 @@ from preshape.grasps.space import GraspSpace
 from preshape.planning.bounds import Bounds, BoxSize
 from preshape.planning.gradient_ascent import GradientAscent
 from preshape.planning.line_search import LineSearch
-from preshape.planning.prior import GraspPrior, PriorChoice, PriorObjective
+from preshape.planning.prior import GraspPrior, PriorObjective
+from preshape.planning.prior_choice import PriorChoice
 
 SPACE = GraspSpace.palm_and_joints("test", {f"joint_{k}": (-0.5, 0.5) for k in range(2)})
 PLANNER = GradientAscent(LineSearch(0.25, growth=2.0, max_step=1.0), tolerance=1e-9, patience=20)
@@ -62,7 +64,10 @@ def test_weight_zero_is_the_likelihood(prior: GraspPrior, tmp_path: Path) -> Non
     prior.write(tmp_path / "prior.json")
     likelihood = quadratic(np.zeros(8), np.ones(8))
     choice = PriorChoice(str(tmp_path / "prior.json"), weight=0.0)
-    assert choice.joined_to(likelihood, SPACE, pose(0)) is likelihood
+    assert (
+        choice.joined_to(likelihood, SPACE, view_of(torch.zeros(1, 8, 0, 0), [[1.0] * 4]), pose(0))
+        is likelihood
+    )
     theta = torch.from_numpy(start(pose(0))[0])
     weightless = PriorObjective(likelihood, prior, pose(0), weight=0.0)
     assert torch.equal(weightless(theta), likelihood(theta))
@@ -73,7 +78,7 @@ def test_the_density_is_that_of_scikit_learn_and_differentiable(tmp_path: Path) 
     prior = GraspPrior.fitted(theta, boxes, SPACE, components=3, seed=0)
     prior.write(tmp_path / "prior.json")
     again = GraspPrior.read(tmp_path / "prior.json")
-    box, leaf = torch.from_numpy(boxes[0]), torch.from_numpy(theta[:2]).requires_grad_()
+    box, leaf = torch.from_numpy(boxes[:1]), torch.from_numpy(theta[:2]).requires_grad_()
     assert torch.equal(prior.log_density(leaf, box), again.log_density(leaf, box))
     assert torch.autograd.gradcheck(lambda theta: again.log_density(theta, box), leaf)
 
@@ -83,6 +88,13 @@ def test_what_is_no_prior_is_refused(prior: GraspPrior, tmp_path: Path) -> None:
     prior.write(path)
     write_json(path, read_json(path) | {"means": [[0.0]]})
     with pytest.raises(InputError, match="damaged"):
+        GraspPrior.read(path)
+    prior.write(path)
+    write_json(path, read_json(path) | {"log_weights": [None]})
+    with pytest.raises(InputError, match="damaged"):
+        GraspPrior.read(path)
+    path.write_text(path.read_text(encoding="utf-8").replace("null", "NaN"), encoding="utf-8")
+    with pytest.raises(InputError, match="NaN"):
         GraspPrior.read(path)
     with pytest.raises(InputError, match="no file"):
         PriorChoice(weight=1.0)
