@@ -7,7 +7,6 @@ from hydra.utils import instantiate
 from omegaconf import DictConfig
 
 from preshape.entry_point import entry_point
-from preshape.planning.prior import GraspPrior
 
 log = logging.getLogger(__name__)
 
@@ -18,17 +17,14 @@ def main(cfg: DictConfig) -> None:
     data = instantiate(cfg.dataset.data)
     data.setup()
     data.render(with_patches=False)
-    lifted = data.train.lifted()
-    examples = lifted[np.arange(len(lifted)).tolist()]
-    prior = GraspPrior.fitted(
-        examples.theta.double().numpy(),
-        examples.view.T_camera_box.double().numpy(),
+    train, held_out = (part.lifted() for part in (data.train, data.validation))
+    prior = instantiate(cfg.prior.fit).fitted(
+        train[np.arange(len(train)).tolist()],
+        held_out[np.arange(len(held_out)).tolist()] if len(held_out) else None,
         instantiate(cfg.robot.grasp_space),
-        components=cfg.components,
-        seed=cfg.seed,
     )
     prior.write(cfg.output)
-    log.info("Prior of %d distributions, fitted to %d grasps: %s", cfg.components, len(lifted), cfg.output)
+    log.info("Prior, fitted to %d grasps: %s", len(train), cfg.output)
 
 
 if __name__ == "__main__":
