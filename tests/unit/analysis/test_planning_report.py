@@ -21,6 +21,8 @@ def report(evaluation: Path, output: Path, **conditions: str) -> PlanningReport:
     return PlanningReport(
         conditions=conditions or {"seen": str(evaluation), "scans": str(output / "missing")},
         subject="inference",
+        paper_conditions={"unseen": str(evaluation)},
+        paper_subject="inference",
         improvements=[str(output / "missing.json"), str(output / "improvement.json")],
         output=str(output / "planning.json"),
         page=str(output / "results.md"),
@@ -60,6 +62,10 @@ def test_the_report_counts_what_the_trials_say(evaluation_folder: Path, written:
     assert "62 %" in page
     assert "scans" not in page
     assert "| Uniform | 2 | 60 |" in page
+    of_paper = content["paper_network"]
+    assert [test["difference"] for test in of_paper["tests"]] == [content["tests"][0]["difference"]]
+    assert "### With the paper's network" in page
+    assert Image.open(written / "pictures" / "planning_paper_network_rate.png").size[0] > 200
 
 
 def test_pairs_are_scenes_on_which_both_executed_a_grasp(evaluation_folder: Path, written: Path) -> None:
