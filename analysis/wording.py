@@ -7,6 +7,8 @@ PLANNERS = {
     "cem": "Cross-entropy method",
     "lbfgs": "L-BFGS-B",
     "paper": "Inference with the paper's steps",
+    "map_mixture": "MAP, Gaussian mixture",
+    "map_network": "MAP, mixture density network",
     "planner_optimum": "Own optima",
 }
 MARKS = {
