@@ -18,8 +18,11 @@ from preshape.errors import InputError
 from preshape.models.config_cnn import ConfigCNN
 from preshape.paths import project_root
 
-LEARNED_FROM = ("allegro_grocery", "allegro_grocery_optima")
-"""Data sets of the shipped weights."""
+SHIPPED = {
+    "palm_points": ("allegro_grocery", "allegro_grocery_optima"),
+    "config_cnn": ("allegro_grocery",),
+}
+"""Networks with shipped weights, and the data sets that they learned from."""
 
 
 def make_model(
@@ -126,9 +129,10 @@ def test_weights_of_another_network_are_refused(weights: Path, model: ConfigCNN,
         load_weights(weights, model)
 
 
-def test_the_shipped_weights_are_those_of_the_default_network() -> None:
+@pytest.mark.parametrize("suffix", ["", "_unseen"])
+@pytest.mark.parametrize("name", SHIPPED)
+def test_the_shipped_weights_fit_the_networks_and_tables(name: str, suffix: str) -> None:
     with initialize_config_dir(str(project_root() / "conf"), version_base="1.3"):
-        cfg = compose("train")
-    model = instantiate(cfg.model)
-    shipped = load_weights(project_root() / "weights" / f"{model.name}.safetensors", model)
-    assert shipped.data_hash == data_hash(*(Path(cfg.paths.data) / name for name in LEARNED_FROM))
+        cfg = compose("train", [f"model={name}"])
+    shipped = load_weights(project_root() / "weights" / f"{name}{suffix}.safetensors", instantiate(cfg.model))
+    assert shipped.data_hash == data_hash(*(Path(cfg.paths.data) / folder for folder in SHIPPED[name]))
