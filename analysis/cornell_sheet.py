@@ -1,0 +1,55 @@
+"""A contact sheet of the Cornell data: images with their rectangles."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from preshape.cornell.data_set import CornellDataSet, CornellImage
+from preshape.cornell.image_files import read_colour
+from preshape.cornell.layout import HEIGHT, WIDTH
+
+ACROSS = 4
+MARGIN_PX = 20
+POSITIVE, NEGATIVE = "#0072b2", "#e69f00"
+"""Blue and orange, which colour-blind people can tell apart."""
+
+
+def contact_sheet(data: CornellDataSet, shown: int) -> Figure:
+    """Figure of images around their rectangles, spread over the data set; thick edges are the jaws.
+
+    Raises:
+        InputError: if an image cannot be read.
+    """
+    places = np.linspace(0, len(data.images) - 1, min(shown, len(data.images))).astype(int)
+    down = -(-len(places) // ACROSS)
+    figure = Figure(figsize=(ACROSS * 3.4, down * 2.8 + 0.4), layout="constrained")
+    for axes, place in zip(figure.subplots(down, ACROSS, squeeze=False).flat, places, strict=False):
+        image = data.images[place]
+        axes.imshow(read_colour(image.files.colour))
+        for rectangles, colour in ((image.negatives, NEGATIVE), (image.positives, POSITIVE)):
+            for rectangle in rectangles:
+                corners = rectangle.corners()
+                axes.plot(*corners[[0, 1]].T, *corners[[2, 3]].T, color=colour, linewidth=0.6)
+                axes.plot(*corners[[1, 2]].T, *corners[[3, 0]].T, color=colour, linewidth=1.8)
+        _show_only_around(axes, image)
+        axes.set_title(f"{image.files.number:04d} {image.subject.category.replace('_', ' ')}", fontsize=9)
+    for axes in figure.axes:
+        axes.set_axis_off()
+    legend = [Patch(color=POSITIVE, label="positive"), Patch(color=NEGATIVE, label="negative")]
+    figure.legend(handles=legend, loc="outside lower center", ncols=2, frameon=False)
+    return figure
+
+
+def _show_only_around(axes: Axes, image: CornellImage) -> None:
+    """Show the part of the image with the rectangles, in the proportions of the image."""
+    rectangles = image.positives + image.negatives
+    if not rectangles:
+        return
+    corners = np.concatenate([rectangle.corners() for rectangle in rectangles])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    half = (float((high - low).max()) / 2 + MARGIN_PX) * np.array([1.0, HEIGHT / WIDTH])
+    half *= max(1.0, float(((high - low) / 2 / half).max()))
+    (left, top), (right, bottom) = (low + high) / 2 - half, (low + high) / 2 + half
+    axes.set_xlim(left, right)
+    axes.set_ylim(bottom, top)
