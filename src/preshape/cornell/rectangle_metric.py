@@ -13,11 +13,11 @@ MAX_ANGLE_RAD = math.radians(30)
 
 
 def is_correct(predicted: GraspRectangle, positives: Iterable[GraspRectangle]) -> bool:
-    """Whether any labelled positive rectangle of the image is turned by less than 30 degrees against the
-    predicted one, and their Jaccard index is above 0.25.
+    """Whether any labelled positive rectangle of the image is turned by at most 30 degrees against the
+    predicted one, and their Jaccard index is at least 0.25.
     """
     return any(
-        angle_between(predicted, positive) < MAX_ANGLE_RAD and jaccard(predicted, positive) > MIN_JACCARD
+        angle_between(predicted, positive) <= MAX_ANGLE_RAD and jaccard(predicted, positive) >= MIN_JACCARD
         for positive in positives
     )
 
