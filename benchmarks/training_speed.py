@@ -38,7 +38,11 @@ def channels_last_training(seed: int, flop_per_s: float) -> Comparison:
         def logits() -> Tensor:
             if channels_last:
                 return model(view, theta)
-            return model.head(model.image_channel(model.normalize_patch(view.patch)), theta)
+            image = model.image_channel(model.normalize_patch(view.patch))
+            grasp = model.theta_channel(model.normalize_theta(theta))
+            tiled = grasp[:, :, None, None].expand(-1, -1, *image.shape[2:])
+            joined = model.joint_convolution(torch.cat((image, tiled), dim=1))
+            return model.joint_channel(joined).squeeze(1)
 
         def step() -> None:
             optimizer.zero_grad()
@@ -48,9 +52,9 @@ def channels_last_training(seed: int, flop_per_s: float) -> Comparison:
         return step
 
     return side_by_side(
-        f"training step of config-CNN, batch {BATCH}, channels last",
+        f"training step of config-CNN, batch {BATCH}, channels last, grasps not tiled",
         step_of(channels_last=True),
-        "channels first",
+        "channels first, grasps tiled as in the paper",
         step_of(channels_last=False),
         RUNS,
         flop_per_s,
