@@ -5,14 +5,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from analysis.cornell_surfaces import spread
+from analysis.dataset_charts import BLUE, ORANGE
 from preshape.cornell.data_set import CornellDataSet, CornellImage
 from preshape.cornell.image_files import read_colour
 from preshape.cornell.layout import HEIGHT, WIDTH
 
 ACROSS = 4
 MARGIN_PX = 20
-POSITIVE, NEGATIVE = "#0072b2", "#e69f00"
-"""Blue and orange, which colour-blind people can tell apart."""
 
 
 def contact_sheet(data: CornellDataSet, shown: int) -> Figure:
@@ -21,13 +21,12 @@ def contact_sheet(data: CornellDataSet, shown: int) -> Figure:
     Raises:
         InputError: if an image cannot be read.
     """
-    places = np.linspace(0, len(data.images) - 1, min(shown, len(data.images))).astype(int)
-    down = -(-len(places) // ACROSS)
+    images = spread(data.images, shown)
+    down = -(-len(images) // ACROSS)
     figure = Figure(figsize=(ACROSS * 3.4, down * 2.8 + 0.4), layout="constrained")
-    for axes, place in zip(figure.subplots(down, ACROSS, squeeze=False).flat, places, strict=False):
-        image = data.images[place]
+    for axes, image in zip(figure.subplots(down, ACROSS, squeeze=False).flat, images, strict=False):
         axes.imshow(read_colour(image.files.colour))
-        for rectangles, colour in ((image.negatives, NEGATIVE), (image.positives, POSITIVE)):
+        for rectangles, colour in ((image.negatives, ORANGE), (image.positives, BLUE)):
             for rectangle in rectangles:
                 corners = rectangle.corners()
                 axes.plot(*corners[[0, 1]].T, *corners[[2, 3]].T, color=colour, linewidth=0.6)
@@ -36,7 +35,7 @@ def contact_sheet(data: CornellDataSet, shown: int) -> Figure:
         axes.set_title(f"{image.files.number:04d} {image.subject.category.replace('_', ' ')}", fontsize=9)
     for axes in figure.axes:
         axes.set_axis_off()
-    legend = [Patch(color=POSITIVE, label="positive"), Patch(color=NEGATIVE, label="negative")]
+    legend = [Patch(color=BLUE, label="positive"), Patch(color=ORANGE, label="negative")]
     figure.legend(handles=legend, loc="outside lower center", ncols=2, frameon=False)
     return figure
 

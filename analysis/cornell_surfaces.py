@@ -1,6 +1,7 @@
 """How good the surfaces of the Cornell data are: the table's flatness, approximate against measured depth."""
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -11,6 +12,7 @@ from preshape.cornell.views import Surface, load_surface
 from preshape.perception.image import eight_channel_image
 from preshape.perception.observation import Observation
 
+Item = TypeVar("Item")
 TABLE = (slice(HEIGHT // 2, HEIGHT - 20), slice(WIDTH // 5, WIDTH * 4 // 5))
 """Part of the image that shows the table, and the object on it."""
 NEAR_M = 0.01
@@ -41,10 +43,10 @@ def surface_figures(data: CornellDataSet, compared: int) -> dict[str, Any]:
     }
 
 
-def spread(files: list[ImageFiles], n: int) -> list[ImageFiles]:
-    """At most n of the images, evenly spaced."""
-    places = np.linspace(0, len(files) - 1, min(n, len(files))).astype(int)
-    return [files[place] for place in places]
+def spread(items: Sequence[Item], n: int) -> list[Item]:
+    """At most n of the images or their files, evenly spaced."""
+    places = np.linspace(0, len(items) - 1, min(n, len(items))).astype(int)
+    return [items[place] for place in places]
 
 
 def flatness(view: Observation) -> dict[str, float]:
