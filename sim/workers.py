@@ -30,9 +30,11 @@ Work = Callable[[Job, BeginStep], Result]
 
 # One process per core and one thread per process: more would only get in each other's way.
 # The last one is for lavapipe, which draws the pictures.
-ONE_THREAD = dict.fromkeys(
-    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "LP_NUM_THREADS"), "1"
-)
+ONE_THREAD = {
+    **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"),
+    # Pixels are drawn by the thread that asks for them; waiting for another one takes a tenth more time.
+    "LP_NUM_THREADS": "0",
+}
 TRIES = 2
 PATIENCE = 10
 """How much longer than its processor time a job may take on the clock, since others may keep the cores."""

@@ -1,5 +1,7 @@
 """config-CNN: the paper's network of an image and a grasp configuration (section 3.1)."""
 
+from typing import NamedTuple
+
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
@@ -10,6 +12,18 @@ from preshape.models.success_model import IMAGE_CHANNELS, SuccessModel, xavier_w
 from preshape.perception.grasp_patches import cut_patches
 from preshape.perception.hand_projection import HandProjection
 from preshape.perception.view_batch import ViewBatch
+
+
+class JointInput(NamedTuple):
+    """What the convolution with which k begins makes of its two inputs; c = 8 x 13 x 13 values of its map.
+
+    Args:
+        of_image: what it makes of m(z), for each of f views.
+        of_theta: what it makes of each of the 8 values of n, tiled, where all else is 0.
+    """
+
+    of_image: Float[Tensor, "f c"]
+    of_theta: Float[Tensor, "8 c"]
 
 
 class ConfigCNN(SuccessModel):
@@ -67,31 +81,31 @@ class ConfigCNN(SuccessModel):
         )
         self.apply(xavier_weights)
 
-    def features(self, view: ViewBatch) -> Float[Tensor, "b 8 13 13"] | ViewBatch:
+    def features(self, view: ViewBatch) -> JointInput | ViewBatch:
         """What k makes of m(z) if patches are fixed on the object; the views if they move with the palm."""
-        return self._image_features(view.patch) if self.projection is None else view.to(self.image_mean)
+        return self._joint_input(view.patch) if self.projection is None else view.to(self.image_mean)
 
     def raw_head(
-        self, features: Float[Tensor, "f 8 13 13"] | ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]
+        self, features: JointInput | ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]
     ) -> Float[Tensor, "b"]:
         """k(m, n(theta)): logits of b grasps, from the features of b views or of one that they share."""
         if isinstance(features, ViewBatch):
-            features = self._image_features(self._palm_patches(features, theta))
-        logits: Tensor = self.joint_channel(features + self._theta_features(theta))
+            features = self._joint_input(self._palm_patches(features, theta))
+        n = self.theta_channel(self.normalize_theta(theta))
+        joint = torch.addmm(features.of_image, n, features.of_theta)
+        logits: Tensor = self.joint_channel(joint.unflatten(1, (8, 13, 13)))
         return logits.squeeze(1)
 
-    def _image_features(self, patch: Float[Tensor, "b 8 400 400"]) -> Float[Tensor, "b 8 13 13"]:
+    def _joint_input(self, patch: Float[Tensor, "b 8 400 400"]) -> JointInput:
         # Convolutions of this shape run nearly twice as fast on a CPU with the channels last.
         patch = self.normalize_patch(patch).contiguous(memory_format=torch.channels_last)
-        of_image, bias = self.joint_convolution.weight[:, :8], self.joint_convolution.bias
-        return conv2d(self.image_channel(patch), of_image, bias, stride=2, padding=1)
-
-    def _theta_features(self, theta: Float[Tensor, "b d"]) -> Float[Tensor, "b 8 13 13"]:
-        of_theta = self.joint_convolution.weight[:, 8:]
-        everywhere = theta.new_ones(1, 1, 25, 25)
-        response = conv2d(everywhere, of_theta.reshape(64, 1, 3, 3), stride=2, padding=1)
-        n = self.theta_channel(self.normalize_theta(theta))
-        return torch.einsum("bi,oihw->bohw", n, response.view(8, 8, *response.shape[2:]))
+        image_weight, theta_weight = self.joint_convolution.weight.split(8, dim=1)
+        of_image = conv2d(
+            self.image_channel(patch), image_weight, self.joint_convolution.bias, stride=2, padding=1
+        )
+        one_each = torch.eye(8).to(patch).view(8, 8, 1, 1).expand(8, 8, 25, 25)
+        of_theta = conv2d(one_each, theta_weight, stride=2, padding=1)
+        return JointInput(of_image.flatten(1), of_theta.flatten(1))
 
     def _palm_patches(self, view: ViewBatch, theta: Float[Tensor, "b d"]) -> Float[Tensor, "b 8 400 400"]:
         assert self.projection is not None
