@@ -11,10 +11,11 @@ from lightning.pytorch.utilities.types import OptimizerLRSchedulerConfig
 from torch import Tensor
 from torch.nn.functional import binary_cross_entropy_with_logits
 from torch.optim import Optimizer
-from torch.optim.lr_scheduler import LRScheduler, MultiStepLR, OneCycleLR
+from torch.optim.lr_scheduler import LRScheduler, MultiStepLR
 from torchmetrics.functional.classification import binary_auroc
 
 from preshape.data.grasp_dataset import GraspBatch
+from preshape.models.one_cycle import one_cycle
 from preshape.models.regression_cnn import RegressionCNN
 from preshape.models.success_model import GraspNetwork, SuccessModel
 
@@ -90,8 +91,7 @@ class GraspLightningModule(lightning.LightningModule, ABC):
 def _schedule(optimizer: Optimizer, settings: LearningSettings) -> LRScheduler:
     if settings.schedule == "one_cycle":
         # one more, because the scheduler is also asked after the last batch
-        steps = settings.iterations + 1
-        return OneCycleLR(optimizer, settings.learning_rate, total_steps=steps, pct_start=0.1)
+        return one_cycle(optimizer, settings.learning_rate, settings.iterations + 1)
     third = settings.iterations // 3
     return MultiStepLR(optimizer, milestones=[third, 2 * third], gamma=0.1)
 

@@ -7,10 +7,10 @@ from typing import Protocol
 import torch
 from jaxtyping import Float32
 from torch import Tensor
-from torch.optim.lr_scheduler import OneCycleLR
 
 from preshape.data.grasp_dataset import GraspBatch
 from preshape.grasps.space import GraspSpace
+from preshape.models.one_cycle import one_cycle
 from preshape.planning.mixture_density_network import (
     POINTS,
     MixtureDensityNetwork,
@@ -119,7 +119,7 @@ class NetworkFit:
         optimizer = torch.optim.AdamW(
             network.parameters(), self.learning_rate, weight_decay=self.weight_decay
         )
-        cycle = OneCycleLR(optimizer, self.learning_rate, total_steps=self.iterations, pct_start=0.1)
+        cycle = one_cycle(optimizer, self.learning_rate, self.iterations)
         best, kept = float("-inf"), network.state_dict()
         with Progress("Fitting the prior", self.iterations, "batches") as progress:
             for batch in range(1, self.iterations + 1):
