@@ -7,6 +7,7 @@ PLANNERS = {
     "cem": "Cross-entropy method",
     "lbfgs": "L-BFGS-B",
     "paper": "Inference with the paper's steps",
+    "paper_constrained": "The paper's steps, kept off table and object",
     "map_mixture": "MAP, Gaussian mixture",
     "map_network": "MAP, mixture density network",
     "planner_optimum": "Own optima",
