@@ -1,6 +1,6 @@
 # Every target sets up what it needs; setting up again takes a second. `make help` lists the targets.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint bench lock clean
+.PHONY: help setup demo test lint bench ui lock clean
 
 PYTHON_IN_VENV := .venv/bin/python
 
@@ -25,6 +25,9 @@ lint: setup  ## check style and types only
 
 bench: setup  ## measure against other software, side by side
 	$(PYTHON_IN_VENV) benchmarks/run.py
+
+ui: setup  ## look at trainings in MLflow, at http://127.0.0.1:5000, for this machine alone
+	.venv/bin/mlflow ui --backend-store-uri sqlite:///mlflow.db --host 127.0.0.1
 
 lock: setup  ## write requirements.lock from the virtual environment
 	scripts/lock.sh
