@@ -15,6 +15,7 @@ from omegaconf import DictConfig, OmegaConf
 from preshape.composition import check_composition
 from preshape.errors import InputError, bad_input_behind
 from preshape.paths import project_root
+from preshape.provenance import TYPED_COMMAND, typed_command
 from preshape.sweep_folders import sweep_group
 
 EXIT_BAD_INPUT = 2
@@ -45,6 +46,7 @@ def entry_point(config_name: str) -> Callable[[Callable[[DictConfig], None]], Ca
         def command() -> None:
             # Hydra would otherwise print its own report of every exception and exit before we see it.
             os.environ["HYDRA_FULL_ERROR"] = "1"
+            os.environ[TYPED_COMMAND] = typed_command()
             try:
                 conf = str(project_root() / "conf")
                 hydra.main(config_path=conf, config_name=config_name, version_base="1.3")(job)()

@@ -1,5 +1,6 @@
 """Where a result comes from: the command, the code, the versions, the seed, the date."""
 
+import os
 import subprocess
 import sys
 from datetime import UTC, datetime
@@ -14,6 +15,8 @@ NAMED_PACKAGES = (
     *("ompl", "pin", "coal", "toppra", "mlflow"),
 )
 """Packages whose version can change a number."""
+TYPED_COMMAND = "PRESHAPE_COMMAND"
+"""Environment variable by which the processes of a sweep, which launchers start, know what was typed."""
 
 
 def provenance(seed: int) -> dict[str, Any]:
@@ -29,6 +32,11 @@ def provenance(seed: int) -> dict[str, Any]:
 
 def command_line() -> str:
     """The command as it can be typed again from the project's folder."""
+    return os.environ.get(TYPED_COMMAND) or typed_command()
+
+
+def typed_command() -> str:
+    """The same, of the process that it was typed for."""
     script = Path(sys.argv[0]).resolve()
     root = project_root()
     name = script.relative_to(root) if script.is_relative_to(root) else script.name

@@ -71,6 +71,7 @@ def test_a_sweep_from_an_empty_store_can_be_started_again(place: Path) -> None:
     begun = run_train(place, "--multirun", "hydra/launcher=joblib", "hydra.launcher.n_jobs=2", *sweep)
     assert begun.returncode == 0, begun.stderr
     (summary,) = (place / "outputs" / "train").glob("sweep,*/summary.json")
+    assert json.loads(summary.read_text())["command"].startswith("python src/train.py --multirun ")
     (summary.parent / "unseen_fold1" / "metrics.json").unlink()
     again = run_train(place, "--multirun", *sweep)
     assert again.returncode == 0, again.stderr
