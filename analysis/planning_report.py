@@ -156,8 +156,10 @@ def _comparison(evaluations: Mapping[str, Evaluation], subject: str) -> dict[str
     }
 
 
-READING = """Every planner planned on the same scenes from the same initial grasps. Of `heuristic` every
-initial grasp is executed, of the others the best that the arm can reach: lifted of executed is the
+READING = """Seen and unseen are the paper's ten objects, which the network learned from or not; others are
+twenty that were drawn at random, which it did not learn from; scans are objects of another kind.
+Every planner planned on the same scenes from the same initial grasps. Of `heuristic` every
+initial grasp is executed, of the rest the best that the arm can reach: lifted of executed is the
 paper's rate. Lifted of all scenes counts a scene without a grasp within reach as a failure; of
 `heuristic` one executed grasp a scene counts, drawn by the trial's seed. Intervals are 95 % Wilson;
 seconds are those of planning beside other work, without image features."""
