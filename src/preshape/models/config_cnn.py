@@ -93,18 +93,16 @@ class ConfigCNN(SuccessModel):
             features = self._joint_input(self._palm_patches(features, theta))
         n = self.theta_channel(self.normalize_theta(theta))
         joint = torch.addmm(features.of_image, n, features.of_theta)
-        logits: Tensor = self.joint_channel(joint.unflatten(1, (8, 13, 13)))
+        logits: Tensor = self.joint_channel(joint.view(-1, 8, 13, 13))
         return logits.squeeze(1)
 
     def _joint_input(self, patch: Float[Tensor, "b 8 400 400"]) -> JointInput:
         # Convolutions of this shape run nearly twice as fast on a CPU with the channels last.
         patch = self.normalize_patch(patch).contiguous(memory_format=torch.channels_last)
-        image_weight, theta_weight = self.joint_convolution.weight.split(8, dim=1)
-        of_image = conv2d(
-            self.image_channel(patch), image_weight, self.joint_convolution.bias, stride=2, padding=1
-        )
+        weight, bias = self.joint_convolution.weight, self.joint_convolution.bias
+        of_image = conv2d(self.image_channel(patch), weight[:, :8], bias, stride=2, padding=1)
         one_each = torch.eye(8).to(patch).view(8, 8, 1, 1).expand(8, 8, 25, 25)
-        of_theta = conv2d(one_each, theta_weight, stride=2, padding=1)
+        of_theta = conv2d(one_each, weight[:, 8:], stride=2, padding=1)
         return JointInput(of_image.flatten(1), of_theta.flatten(1))
 
     def _palm_patches(self, view: ViewBatch, theta: Float[Tensor, "b d"]) -> Float[Tensor, "b 8 400 400"]:
