@@ -167,7 +167,8 @@ RELIABILITY = """How far the probability that planners report at the grasp that 
 came of it, with its 95 % bootstrap interval; then after corrections that were each fitted to one half of
 the scenes and applied to the other:"""
 PAPER_NETWORK = """Config-CNN learned from the shipped trials alone, without optima. The paper's planner
-(its steps, no constraint), its regression network and the others compete on the scenes of above:"""
+(its steps, without a constraint and with ours), its regression network and the others compete on the
+scenes of above:"""
 ROUNDS = """`python sim/improve.py`: in each round grasps on objects that are not tested are executed and
 added to the trials, the network is trained again, and the planners compete again on the same test scenes.
 What is added are the planner's own optima, or as a comparison grasps of which the network is least sure
