@@ -24,7 +24,7 @@ def main(cfg: DictConfig) -> None:
         "about": {
             "experiment": hydra.runtime.choices.get("experiment") or "default",
             **{key: cfg[key] for key in ("split", "fold")},
-            **{key: cfg.dataset.data[key] for key in ("trials", "trials_learned")},
+            **{key: cfg.dataset.data.get(key) for key in ("trials", "trials_learned")},
         },
         "config": OmegaConf.to_container(cfg, resolve=True),
         "unresolved": OmegaConf.to_container(cfg, resolve=False),

@@ -9,8 +9,8 @@ import torch
 from jaxtyping import Bool, Float64
 from torch.utils.data import DataLoader
 
-from preshape.data.data_module import GraspDataModule
-from preshape.data.grasp_dataset import GraspBatch, GraspDataset
+from preshape.data.grasp_dataset import GraspBatch
+from preshape.data.labelled_data import Examples, LabelledData
 from preshape.data.trial_table import TrialTable
 from preshape.evaluation.baselines import constant_baseline, random_baseline
 from preshape.evaluation.calibration import fit_temperature, oversampling_shift, reliability_diagram
@@ -56,7 +56,7 @@ class Measurement:
         return {**self.metrics.to_dict(), **self.extra, "baselines": baselines}
 
 
-def calibrate(model: SuccessModel, data: GraspDataModule, *, prior_correction: bool) -> None:
+def calibrate(model: SuccessModel, data: LabelledData, *, prior_correction: bool) -> None:
     """Make a network's probabilities agree with observed rates, as far as moving and dividing logits can.
 
     Args:
@@ -95,7 +95,7 @@ def predict(model: SuccessModel, loader: DataLoader[GraspBatch]) -> Float64[np.n
     return _probability(predict_logits(model, loader))
 
 
-def measure(model: GraspNetwork, data: GraspDataModule, folder: Path, seed: int) -> Measurement:
+def measure(model: GraspNetwork, data: LabelledData, folder: Path, seed: int) -> Measurement:
     """Figures of a trained network on the test trials; writes predictions and pictures.
 
     Args:
@@ -114,14 +114,14 @@ def measure(model: GraspNetwork, data: GraspDataModule, folder: Path, seed: int)
 
 
 def _measure_success(
-    model: SuccessModel, data: GraspDataModule, folder: Path, rng: np.random.Generator
+    model: SuccessModel, data: LabelledData, folder: Path, rng: np.random.Generator
 ) -> Measurement:
     trials, groups = data.test.trials, data.test.trials.scene_ids
     labels = trials.lifted
     logits = predict_logits(model, data.test_dataloader())
     success_prob = _probability(logits)
     raw_logits = logits * model.temperature.item() - model.logit_shift.item()
-    metrics = classification_metrics(labels, success_prob, rng=rng, groups=groups)
+    metrics = classification_metrics(labels, success_prob, rng=rng, groups=groups, threshold=data.threshold)
     baselines: dict[str, ClassificationMetrics | GraspErrors] = {
         "random": random_baseline(labels, rng=rng, groups=groups),
         "constant": constant_baseline(labels, data.train.trials.lifted, rng=rng, groups=groups),
@@ -149,7 +149,7 @@ def _measure_success(
 
 def _at_chosen_threshold(
     model: SuccessModel,
-    data: GraspDataModule,
+    data: LabelledData,
     labels: Bool[np.ndarray, "n"],
     success_prob: Float64[np.ndarray, "n"],
 ) -> DecisionMetrics:
@@ -158,7 +158,7 @@ def _at_chosen_threshold(
     return decision_metrics(labels, success_prob, threshold)
 
 
-def _measure_grasps(model: RegressionCNN, data: GraspDataModule, folder: Path) -> Measurement:
+def _measure_grasps(model: RegressionCNN, data: LabelledData, folder: Path) -> Measurement:
     model.eval()
     device = next(model.parameters()).device
     with torch.inference_mode():
@@ -170,7 +170,7 @@ def _measure_grasps(model: RegressionCNN, data: GraspDataModule, folder: Path) -
     return Measurement(grasp_errors(theta, reached), {"constant": grasp_errors(mean_grasp, reached)}, {}, {})
 
 
-def _mean_grasp(examples: GraspDataset) -> Float64[np.ndarray, "d"]:
+def _mean_grasp(examples: Examples) -> Float64[np.ndarray, "d"]:
     """The mean of the grasps learned from, parameter by parameter."""
     mean: Float64[np.ndarray, "d"] = examples.trials.reached.mean(axis=0)
     return mean

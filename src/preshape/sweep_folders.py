@@ -8,7 +8,9 @@ NAMED_ELSEWHERE = (
     *("run_name", "experiment", "split", "fold", "hydra", "paths", "tracking"),
     "retrain_after_code_changes",
 )
-"""Overrides that do not tell groups apart, or that the names tell already."""
+"""Groups of overrides that do not tell groups apart, or that the names tell already."""
+PLACES = ("dataset.root",)
+"""Single overrides of that kind: where things lie."""
 LONGEST = 80
 
 
@@ -25,7 +27,11 @@ def sweep_group(run_name: str, overrides: Sequence[str]) -> str:
     chosen = dict(override.lstrip("+~").partition("=")[::2] for override in sorted(overrides))
     if "run_name" not in chosen:
         chosen.pop("model", None)  # but not model.members=1, which is another network of the same name
-    rest = {key: value for key, value in chosen.items() if re.split(r"[.@/]", key)[0] not in NAMED_ELSEWHERE}
+    rest = {
+        key: value
+        for key, value in chosen.items()
+        if key not in PLACES and re.split(r"[.@/]", key)[0] not in NAMED_ELSEWHERE
+    }
     parts = [run_name, *(f"{key.rpartition('.')[2]}={value}" for key, value in rest.items())]
     name = re.sub(r"[^\w.=,+-]", "-", ",".join(parts))
     if len(name) <= LONGEST and len({key.rpartition(".")[2] for key in rest}) == len(rest):

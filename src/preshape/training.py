@@ -14,7 +14,7 @@ import lightning
 from safetensors.torch import save
 
 from preshape.checkpoints import save_weights, sidecar_path
-from preshape.data.data_module import GraspDataModule
+from preshape.data.labelled_data import LabelledData
 from preshape.evaluation.grasp_errors import GraspErrors
 from preshape.evaluation.metrics import ClassificationMetrics
 from preshape.files import write_json
@@ -71,7 +71,7 @@ class TrainingResult:
 
 def train(
     model: GraspNetwork,
-    data: GraspDataModule,
+    data: LabelledData,
     settings: TrainerSettings,
     folder: Path,
     run: TrackedRun,
@@ -125,7 +125,7 @@ def keep_files(folder: Path, run: TrackedRun) -> None:
 
 
 def _fit(
-    model: GraspNetwork, data: GraspDataModule, settings: TrainerSettings, unfinished: Path, run: TrackedRun
+    model: GraspNetwork, data: LabelledData, settings: TrainerSettings, unfinished: Path, run: TrackedRun
 ) -> list[dict[str, float]]:
     """Fit the weights; returns the points of the curves."""
     _quieten_lightning()
@@ -176,7 +176,7 @@ def is_first_process() -> bool:
 
 def _keep(
     model: GraspNetwork,
-    data: GraspDataModule,
+    data: LabelledData,
     measurement: Measurement,
     folder: Path,
     description: Mapping[str, Any],
@@ -193,7 +193,7 @@ def _keep(
     write_json(folder / METRICS_FILE, content)
 
 
-def _identity(model: GraspNetwork, data: GraspDataModule, settings: TrainerSettings) -> str:
+def _identity(model: GraspNetwork, data: LabelledData, settings: TrainerSettings) -> str:
     """Digest of all that decides the weights: initial weights, statistics, settings, data."""
     digest = hashlib.sha256(save({name: value.contiguous() for name, value in model.state_dict().items()}))
     digest.update(repr((settings, data.batches, data.data_hash)).encode())

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from preshape.data.data_module import GraspDataModule
+from preshape.data.labelled_data import LabelledData
 from preshape.errors import InputError
 from preshape.evaluation.fold_summary import summarise
 from preshape.files import read_json
@@ -17,14 +17,14 @@ from preshape.tracking import NoTracking, SweepMember, TrackedRun, Tracking
 from preshape.training import METRICS_FILE, WEIGHTS_FILE, TrainerSettings, is_first_process, keep_files, train
 
 DECISIVE = (
-    *("preshape.data.data_module", "preshape.measuring"),
+    *("preshape.data.labelled_data", "preshape.measuring"),
     *("preshape.models.callbacks", "preshape.models.lightning_module"),
 )
-"""Modules whose code decides weights and figures, besides that of the network."""
+"""Modules whose code decides weights and figures, besides those of the network and the data."""
 WITHOUT_INFLUENCE = (
     *("paths", "tracking", "run_name", "split", "fold", "retrain_after_code_changes"),
     *("dataset.data.folder", "dataset.data.views.folder", "dataset.data.views.maker"),
-    "dataset.data.views.max_gigabytes",
+    *("dataset.data.views.max_gigabytes", "dataset.root", "dataset.data.maker"),
 )
 """Settings that say where things lie, how fast they are made, or which fold is meant."""
 
@@ -52,7 +52,7 @@ class TrainingJob:
     retrain_after_code_changes: bool
 
     def run(
-        self, model: GraspNetwork, data: GraspDataModule, settings: TrainerSettings, tracking: Tracking
+        self, model: GraspNetwork, data: LabelledData, settings: TrainerSettings, tracking: Tracking
     ) -> str:
         """Train and measure, keep both, and say what came out.
 
@@ -101,9 +101,9 @@ class TrainingJob:
             keep_files(self.folder, run)
         return "had been trained before"
 
-    def _description(self, model: GraspNetwork, data: GraspDataModule) -> dict[str, Any]:
+    def _description(self, model: GraspNetwork, data: LabelledData) -> dict[str, Any]:
         """What the file of the metrics says about the job."""
-        code = [source_digest(module) for module in (*DECISIVE, type(model).__module__)]
+        code = [source_digest(module) for module in (*DECISIVE, *_modules(model, data))]
         return {
             "name": self.name,
             **self.about,
@@ -126,6 +126,10 @@ class TrainingJob:
         found = read_json(self.folder / METRICS_FILE)
         same_fold = all(found.get(key) == self.about[key] for key in ("split", "fold"))
         return same_fold and self._decisive(identity).items() <= found.get("identity", {}).items()
+
+
+def _modules(*parts: object) -> tuple[str, ...]:
+    return tuple(type(part).__module__ for part in parts)
 
 
 def _refuse_several_devices(settings: TrainerSettings) -> None:

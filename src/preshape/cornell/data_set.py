@@ -1,5 +1,6 @@
 """The data set: its images with their objects and labelled rectangles."""
 
+import hashlib
 import logging
 from collections import Counter
 from dataclasses import dataclass
@@ -47,6 +48,18 @@ class CornellDataSet:
     def objects(self) -> dict[int, int]:
         """Object of each image, by the image's number: what `preshape.cornell.folds` deals."""
         return {image.files.number: image.subject.object_id for image in self.images}
+
+    @property
+    def digest(self) -> str:
+        """Digest of the labels and of the images' sizes, by which a trained network names its data."""
+        told = [
+            (
+                *(image.files.number, image.subject, image.positives, image.negatives),
+                [path.stat().st_size for path in image.files.pictures],
+            )
+            for image in self.images
+        ]
+        return hashlib.sha256(repr(told).encode()).hexdigest()
 
 
 def read_cornell(root: str | Path) -> CornellDataSet:

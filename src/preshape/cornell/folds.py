@@ -1,15 +1,59 @@
-"""Five folds of the images: at random, or by their objects."""
+"""Five folds of the images: at random, or by their objects; and what is learned from, watched and tested."""
 
 from collections import Counter
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
-from preshape.data.folds import FOLDS
+from preshape.data.folds import FOLDS, HoldOut, SplitScheme
 from preshape.errors import InputError
 
 
-def image_folds(objects: Mapping[int, int], seed: int) -> dict[int, int]:
+@dataclass(frozen=True)
+class ImageSplit:
+    """Numbers of images, each in exactly one part.
+
+    Args:
+        train: images that the weights are fitted to.
+        validation: images by which training is watched; may be empty.
+        test: images that the figures are about.
+    """
+
+    train: frozenset[int]
+    validation: frozenset[int]
+    test: frozenset[int]
+
+
+def split_images(objects: Mapping[int, int], hold_out: HoldOut) -> ImageSplit:
+    """Split images: image-wise with `SplitScheme.SCENES`, object-wise with `SplitScheme.UNSEEN`.
+
+    Args:
+        objects: object of each image, by the image's number.
+        hold_out: what is held out.
+
+    Raises:
+        InputError: if another split is asked for, or there are too few images or objects.
+    """
+    deals = {SplitScheme.SCENES: image_folds, SplitScheme.UNSEEN: object_folds}
+    deal = deals.get(SplitScheme(hold_out.split))
+    if deal is None:
+        raise InputError(
+            f"The Cornell data set has no split {hold_out.split!r}",
+            where="split",
+            fix="choose split=scenes, which is image-wise, or split=unseen, which is object-wise",
+        )
+    fold_of = deal(objects, hold_out.seed)
+    test = frozenset(number for number, fold in fold_of.items() if fold == hold_out.fold)
+    rest = {number: own for number, own in objects.items() if number not in test}
+    validation: frozenset[int] = frozenset()
+    if hold_out.validation_fraction > 0:
+        part_of = deal(rest, hold_out.seed, max(2, round(1 / hold_out.validation_fraction)))
+        validation = frozenset(number for number, part in part_of.items() if part == 0)
+    return ImageSplit(frozenset(rest) - validation, validation, test)
+
+
+def image_folds(objects: Mapping[int, int], seed: int, folds: int = FOLDS) -> dict[int, int]:
     """Fold of every image, at random; the folds' sizes differ by one at most.
 
     All rectangles of an image are in its fold. Other images of its object may be in others: the image-wise
@@ -18,16 +62,17 @@ def image_folds(objects: Mapping[int, int], seed: int) -> dict[int, int]:
     Args:
         objects: object of each image, by the image's number.
         seed: of the shuffling.
+        folds: how many there are.
 
     Raises:
         InputError: if there are fewer images than folds.
     """
-    _check_enough(len(objects), "images")
+    _check_enough(len(objects), "images", folds)
     shuffled = np.random.default_rng(seed).permutation(sorted(objects))
-    return {int(number): place % FOLDS for place, number in enumerate(shuffled)}
+    return {int(number): place % folds for place, number in enumerate(shuffled)}
 
 
-def object_folds(objects: Mapping[int, int], seed: int) -> dict[int, int]:
+def object_folds(objects: Mapping[int, int], seed: int, folds: int = FOLDS) -> dict[int, int]:
     """Fold of every image such that all images of an object are in the same one: the object-wise split.
 
     Objects are shuffled and then dealt, those with most images first, each to the fold with the fewest
@@ -36,24 +81,25 @@ def object_folds(objects: Mapping[int, int], seed: int) -> dict[int, int]:
     Args:
         objects: object of each image, by the image's number.
         seed: of the shuffling.
+        folds: how many there are.
 
     Raises:
         InputError: if there are fewer objects than folds.
     """
     images = Counter(objects.values())
-    _check_enough(len(images), "objects")
+    _check_enough(len(images), "objects", folds)
     shuffled = (int(number) for number in np.random.default_rng(seed).permutation(sorted(images)))
-    sizes, fold_of = [0] * FOLDS, {}
+    sizes, fold_of = [0] * folds, {}
     for object_id in sorted(shuffled, key=lambda number: -images[number]):
         fold_of[object_id] = int(np.argmin(sizes))
         sizes[fold_of[object_id]] += images[object_id]
     return {number: fold_of[object_id] for number, object_id in sorted(objects.items())}
 
 
-def _check_enough(n: int, what: str) -> None:
-    if n < FOLDS:
+def _check_enough(n: int, what: str, folds: int) -> None:
+    if n < folds:
         raise InputError(
-            f"{n} {what} cannot be dealt over {FOLDS} folds",
+            f"{n} {what} cannot be dealt over {folds} folds",
             where="Cornell data set",
-            fix=f"give a data set with at least {FOLDS} {what}",
+            fix=f"give a data set with at least {folds} {what}",
         )

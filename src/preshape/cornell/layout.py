@@ -43,6 +43,12 @@ class ImageFiles:
     cloud: Path | None
     range_image: Path | None
 
+    @property
+    def pictures(self) -> tuple[Path, ...]:
+        """The files that its view is made of: colours, and points or else distances."""
+        surface = self.range_image if self.cloud is None else self.cloud
+        return (self.colour,) if surface is None else (self.colour, surface)
+
 
 @dataclass(frozen=True)
 class CornellFiles:

@@ -1,19 +1,16 @@
 """From a folder of labelled grasps to the batches of a network."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import reduce
 from pathlib import Path
 
-import lightning
 import numpy as np
 from jaxtyping import Int
-from torch.utils.data import DataLoader, Sampler
 
-from preshape.data.batches import InOrder, PositiveBatches
 from preshape.data.folds import HoldOut, split_trials
-from preshape.data.grasp_dataset import GraspBatch, GraspDataset
+from preshape.data.grasp_dataset import GraspDataset
 from preshape.data.joined_tables import joined
+from preshape.data.labelled_data import BatchSettings, LabelledData, check_lifted
 from preshape.data.tables import data_hash, read_data_set
 from preshape.data.trial_table import SceneTable, TableOrigin, TrialTable
 from preshape.data.view_cache import ViewCache
@@ -21,24 +18,7 @@ from preshape.errors import InputError
 from preshape.grasps.space import GraspSpace
 
 
-@dataclass(frozen=True)
-class BatchSettings:
-    """How trials are drawn for training.
-
-    Args:
-        batch_size: trials per batch.
-        min_positives: lifted trials that a training batch has at least; 0 keeps the table's share.
-        batches_per_epoch: training batches between two validations.
-        seed: seed of the draws.
-    """
-
-    batch_size: int
-    min_positives: int
-    batches_per_epoch: int
-    seed: int
-
-
-class GraspDataModule(lightning.LightningDataModule):
+class GraspDataModule(LabelledData):
     """Executed trials of a data set, rendered, split and in batches.
 
     Args:
@@ -57,7 +37,6 @@ class GraspDataModule(lightning.LightningDataModule):
     train: GraspDataset
     validation: GraspDataset
     test: GraspDataset
-    data_hash: str
 
     def __init__(
         self,
@@ -142,12 +121,7 @@ class GraspDataModule(lightning.LightningDataModule):
         self.train, self.validation, self.test = (
             part.lifted() for part in (self.train, self.validation, self.test)
         )
-        if not len(self.train) or not len(self.test):
-            raise InputError(
-                "No grasp lifted its object among those to learn from, or among those to test with",
-                where=", ".join(map(str, self._folders)),
-                fix="collect more trials with `python sim/collect.py`",
-            )
+        check_lifted(self.train, self.test, ", ".join(map(str, self._folders)))
 
     def render(self, *, with_patches: bool) -> None:
         """Render what is not rendered yet.
@@ -164,35 +138,6 @@ class GraspDataModule(lightning.LightningDataModule):
         self._views.fill(list(scenes.values()), with_patches=with_patches)
         if not with_patches:
             self.train, self.validation, self.test = (part.without_patches() for part in parts)
-
-    def train_dataloader(self) -> DataLoader[GraspBatch]:
-        """Random batches with enough positives."""
-        settings = self.batches
-        batches = PositiveBatches(
-            self.train.trials.lifted,
-            batch_size=settings.batch_size,
-            min_positives=settings.min_positives,
-            batches=settings.batches_per_epoch,
-            seed=settings.seed,
-        )
-        return _loader(self.train, batches)
-
-    def val_dataloader(self) -> DataLoader[GraspBatch]:
-        """The validation trials in order."""
-        return _loader(self.validation, InOrder(len(self.validation), self.batches.batch_size))
-
-    def test_dataloader(self) -> DataLoader[GraspBatch]:
-        """The test trials in order."""
-        return _loader(self.test, InOrder(len(self.test), self.batches.batch_size))
-
-    def predict_dataloader(self) -> DataLoader[GraspBatch]:
-        """The test trials in order."""
-        return self.test_dataloader()
-
-
-def _loader(dataset: GraspDataset, batches: Sampler[list[int]]) -> DataLoader[GraspBatch]:
-    # The sampler already yields whole batches, and the data set looks them up at once.
-    return DataLoader(dataset, sampler=batches, batch_size=None)
 
 
 def _choices(origin: TableOrigin) -> str:

@@ -85,6 +85,19 @@ class HandKinematics(nn.Module):
         bottom = theta.new_tensor([0.0, 0.0, 0.0, 1.0]).expand(len(theta), 1, 4)
         return torch.cat((top, bottom), dim=-2)
 
+    @property
+    def fingers(self) -> int:
+        """Number of fingers."""
+        return len(self.origins)
+
+    def palm(self, theta: Float[Tensor, "b d"]) -> Float[Tensor, "b 3"]:
+        """Origin of theta's palm frame (m)."""
+        return theta[:, :3]
+
+    def direction(self, theta: Float[Tensor, "b d"]) -> Float[Tensor, "b 3"]:
+        """The palm's z axis, the direction of the middle finger."""
+        return self.palm_link_pose(theta)[:, :3, 2]
+
     def link_poses(self, theta: Float[Tensor, "b d"]) -> Float[Tensor, "b f k 4 4"]:
         """Poses of the k links of each of the f fingers, the root first and the tip last."""
         origins, cross = self.origins.to(theta), self.cross.to(theta)

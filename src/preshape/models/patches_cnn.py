@@ -1,25 +1,30 @@
 """patches-CNN: the paper's network of image patches at the palm and the fingertips (section 3.2)."""
 
+from collections.abc import Sequence
+
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
 from preshape.models.success_model import IMAGE_CHANNELS, SuccessModel, xavier_weights
+from preshape.perception.finite_differences import with_finite_differences
 from preshape.perception.grasp_patches import cut_patches
 from preshape.perception.hand_projection import HandProjection
 from preshape.perception.view_batch import ViewBatch
 
 PALM_PATCH = 200
 FINGER_PATCH = 100
-"""Width and height of the patches in pixels."""
+"""Width and height of the paper's patches in pixels."""
 FEATURES = 32
 """Units of each patch's fully connected layer."""
+NORMAL_X, NORMAL_Y = 4, 5
+"""Channels of the normals' components in the image plane."""
 
 
 class PatchesCNN(SuccessModel):
     """A patch at the palm and one at each fingertip, each with a channel of its own.
 
-    Patches are centred where palm and fingertips appear, with the direction of the palm's fingers upwards.
+    Patches are centred where palm and fingertips appear, with the direction of the hand upwards.
     The network learns of theta by these patches alone. With two fingers it has 315,961 parameters as the
     paper's, 319,001 with the joint layer; with four fingers and the joint layer it has 430,761.
 
@@ -28,6 +33,11 @@ class PatchesCNN(SuccessModel):
         projection: where palm and fingertips of the hand appear in an image.
         joint_layer: whether a fully connected layer comes between the concatenated features and the logit.
         keep_prob: probability with which dropout keeps a unit of the fully connected layers.
+        palm_patch, finger_patch: width and height of the patches in pixels of the views.
+        turned_normals: whether normals turn with the patches, so that a grasp that is turned together with
+            what it is at looks the same; the paper's patches keep those of the camera frame.
+        difference_steps: steps in theta (its units) of the finite differences by which the paper derives
+            patches; None for the exact derivative.
     """
 
     def __init__(
@@ -39,13 +49,19 @@ class PatchesCNN(SuccessModel):
         projection: HandProjection,
         joint_layer: bool = True,
         keep_prob: float = 0.75,
+        palm_patch: int = PALM_PATCH,
+        finger_patch: int = FINGER_PATCH,
+        turned_normals: bool = False,
+        difference_steps: Sequence[float] | None = None,
     ) -> None:
         super().__init__(name, grasp_space, theta_dim)
         self.projection = projection
+        self.palm_patch, self.finger_patch = palm_patch, finger_patch
+        self.turned_normals, self.difference_steps = turned_normals, difference_steps
         drop = 1.0 - keep_prob
-        self.palm_channel = _patch_channel(PALM_PATCH, kernels=(12, 6), drop=drop)
+        self.palm_channel = _patch_channel(palm_patch, kernels=(12, 6), drop=drop)
         self.finger_channels = nn.ModuleList(
-            _patch_channel(FINGER_PATCH, kernels=(6, 3), drop=drop) for _ in range(projection.fingers)
+            _patch_channel(finger_patch, kernels=(6, 3), drop=drop) for _ in range(projection.fingers)
         )
         width = FEATURES * (1 + projection.fingers)
         layers: list[nn.Module] = []
@@ -60,24 +76,46 @@ class PatchesCNN(SuccessModel):
 
     def raw_head(self, features: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "b"]:
         """Logits of b grasps, from b views or from one that they share."""
-        hand = self.projection(theta, features.intrinsics)
-        palms = cut_patches(features.patch, hand.palm[:, None], hand.direction, PALM_PATCH)
-        fingers = cut_patches(features.patch, hand.fingertips, hand.direction, FINGER_PATCH)
-        parts = [self.palm_channel(self._prepared(palms[:, 0]))]
+
+        def cut(theta: Tensor) -> tuple[Tensor, ...]:
+            return self._patches(features, theta)
+
+        steps = self.difference_steps
+        palm, fingers = cut(theta) if steps is None else with_finite_differences(cut, theta, steps)
+        parts = [self.palm_channel(self._prepared(palm))]
         parts += [
             channel(self._prepared(fingers[:, finger])) for finger, channel in enumerate(self.finger_channels)
         ]
         logits: Tensor = self.joint_channel(torch.cat(parts, dim=1))
         return logits.squeeze(1)
 
+    def _patches(self, features: ViewBatch, theta: Float[Tensor, "b d"]) -> tuple[Tensor, Tensor]:
+        """The palm's patch (b, 8, h, w) and the f fingers' (b, f, 8, h, w) of each grasp."""
+        hand = self.projection(theta, features.intrinsics)
+        palms = cut_patches(features.patch, hand.palm[:, None], hand.direction, self.palm_patch)
+        fingers = cut_patches(features.patch, hand.fingertips, hand.direction, self.finger_patch)
+        if self.turned_normals:
+            palms, fingers = (_with_turned_normals(own, hand.direction) for own in (palms, fingers))
+        return palms[:, 0], fingers
+
     def _prepared(self, patch: Float[Tensor, "b 8 h w"]) -> Float[Tensor, "b 8 h w"]:
         return self.normalize_patch(patch).contiguous(memory_format=torch.channels_last)
 
 
+def _with_turned_normals(
+    patches: Float[Tensor, "b n 8 h w"], direction: Float[Tensor, "b 2"]
+) -> Float[Tensor, "b n 8 h w"]:
+    """The same patches with their normals' components to the right and down in the patch, not the image."""
+    down_u, down_v = (-direction[:, :, None, None, None]).unbind(dim=1)
+    x, y = patches[:, :, NORMAL_X], patches[:, :, NORMAL_Y]
+    turned = torch.stack((down_v * x - down_u * y, down_u * x + down_v * y), dim=2)
+    return torch.cat((patches[:, :, :NORMAL_X], turned, patches[:, :, NORMAL_Y + 1 :]), dim=2)
+
+
 def _patch_channel(size: int, *, kernels: tuple[int, int], drop: float) -> nn.Sequential:
-    """Two convolutions, pooling and a fully connected layer; the map shrinks by 8, rounded up."""
+    """Two convolutions, pooling and a fully connected layer; each of the first three halves the map."""
     first, second = kernels
-    pixels = (-(-size // 8)) ** 2
+    pixels = (-(-_halved(_halved(size, first), second) // 2)) ** 2
     return nn.Sequential(
         nn.Conv2d(IMAGE_CHANNELS, 32, first, stride=2, padding=(first - 1) // 2),
         nn.ReLU(),
@@ -89,3 +127,8 @@ def _patch_channel(size: int, *, kernels: tuple[int, int], drop: float) -> nn.Se
         nn.ReLU(),
         nn.Dropout(drop),
     )
+
+
+def _halved(size: int, kernel: int) -> int:
+    """Size of a map after a convolution with stride 2: half, rounded up if the kernel is odd, else down."""
+    return (size + kernel % 2) // 2

@@ -6,7 +6,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from preshape.hands.kinematics import HandKinematics
+from preshape.hands.projectable import ProjectableHand
 
 NEAREST_M = 0.05
 """Points nearer to the camera, or behind it, project as if they were at this depth."""
@@ -18,7 +18,8 @@ class ProjectedHand(NamedTuple):
     Args:
         palm: where the origin of the palm frame appears.
         fingertips: where the tips of the f fingers appear.
-        direction: unit vector in which the palm's z axis, the direction of the middle finger, points there.
+        direction: unit vector in which the hand's direction points there: that of an Allegro hand's middle
+            finger, or along the jaws of a gripper.
     """
 
     palm: Float[Tensor, "b 2"]
@@ -30,26 +31,25 @@ class HandProjection(nn.Module):
     """Projects palm and fingertips of grasps by the hand's forward kinematics.
 
     Args:
-        hand: kinematics of the hand; theta's palm pose is in the camera frame.
+        hand: where it has its palm and fingertips: in the camera frame, or as points (u, v, 1) in the image.
     """
 
-    def __init__(self, hand: HandKinematics) -> None:
+    def __init__(self, hand: ProjectableHand) -> None:
         super().__init__()
         self.hand = hand
-        self.fingers = len(hand.origins)
+        self.fingers = hand.fingers
 
     def forward(self, theta: Float[Tensor, "b d"], intrinsics: Float[Tensor, "#b 4"]) -> ProjectedHand:
         """Project b grasps.
 
         Args:
-            theta: grasp configurations (camera frame, m and rad).
+            theta: grasp configurations.
             intrinsics: fx, fy, cx, cy of each image, or of the one that all share (pixels).
         """
-        palm = theta[:, None, :3]
-        points = torch.cat((palm, self.hand.fingertips(theta)), dim=1)
+        palm = self.hand.palm(theta)
+        points = torch.cat((palm[:, None], self.hand.fingertips(theta)), dim=1)
         pixels = project(points, intrinsics)
-        finger_axis = self.hand.palm_link_pose(theta)[:, :3, 2]
-        direction = _image_direction(theta[:, :3], finger_axis, intrinsics)
+        direction = _image_direction(palm, self.hand.direction(theta), intrinsics)
         return ProjectedHand(pixels[:, 0], pixels[:, 1:], direction)
 
 
