@@ -34,7 +34,7 @@ class Augmentation:
             (of the opening's logarithm).
         light: standard deviation of the gain of each colour, and of what is added to all (colours are 0-1).
         background: share of a batch that is added as rectangles of the background, which fail.
-        background_px: how far their centres may lie outside of the bounds of the positive rectangles' centres.
+        background_px: how far their centres may lie beyond the positive rectangles' centres.
     """
 
     mirrored: bool = True

@@ -1,4 +1,4 @@
-"""Views of the data set's images, made when they are first needed and kept in a folder that anyone may delete."""
+"""Views of the data set's images, made when they are first needed and kept in a cache that may be deleted."""
 
 import hashlib
 import io

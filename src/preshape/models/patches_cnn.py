@@ -34,6 +34,7 @@ class PatchesCNN(SuccessModel):
         joint_layer: whether a fully connected layer comes between the concatenated features and the logit.
         keep_prob: probability with which dropout keeps a unit of the fully connected layers.
         palm_patch, finger_patch: width and height of the patches in pixels of the views.
+        palm_kernels: widths of the kernels of the palm's two convolutions; those of the fingers' are 6 and 3.
         turned_normals: whether normals turn with the patches, so that a grasp that is turned together with
             what it is at looks the same; the paper's patches keep those of the camera frame.
         difference_steps: steps in theta (its units) of the finite differences by which the paper derives
@@ -51,6 +52,7 @@ class PatchesCNN(SuccessModel):
         keep_prob: float = 0.75,
         palm_patch: int = PALM_PATCH,
         finger_patch: int = FINGER_PATCH,
+        palm_kernels: Sequence[int] = (12, 6),
         turned_normals: bool = False,
         difference_steps: Sequence[float] | None = None,
     ) -> None:
@@ -59,7 +61,7 @@ class PatchesCNN(SuccessModel):
         self.palm_patch, self.finger_patch = palm_patch, finger_patch
         self.turned_normals, self.difference_steps = turned_normals, difference_steps
         drop = 1.0 - keep_prob
-        self.palm_channel = _patch_channel(palm_patch, kernels=(12, 6), drop=drop)
+        self.palm_channel = _patch_channel(palm_patch, kernels=palm_kernels, drop=drop)
         self.finger_channels = nn.ModuleList(
             _patch_channel(finger_patch, kernels=(6, 3), drop=drop) for _ in range(projection.fingers)
         )
@@ -112,7 +114,7 @@ def _with_turned_normals(
     return torch.cat((patches[:, :, :NORMAL_X], turned, patches[:, :, NORMAL_Y + 1 :]), dim=2)
 
 
-def _patch_channel(size: int, *, kernels: tuple[int, int], drop: float) -> nn.Sequential:
+def _patch_channel(size: int, *, kernels: Sequence[int], drop: float) -> nn.Sequential:
     """Two convolutions, pooling and a fully connected layer; each of the first three halves the map."""
     first, second = kernels
     pixels = (-(-_halved(_halved(size, first), second) // 2)) ** 2

@@ -1,11 +1,21 @@
 """The box that a planner may not leave."""
 
 from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Bool, Float64, Int
 
 from preshape.grasps.space import GraspSpace
+
+
+@runtime_checkable
+class Box(Protocol):
+    """How far a planner may go from an initial grasp."""
+
+    def half_width(self, dim: int) -> Float64[np.ndarray, "{dim}"]:
+        """Half width for each of the parameters; infinite where only the grasp space has limits."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -19,6 +29,29 @@ class BoxSize:
 
     position_m: float = 0.05
     rotation_rad: float = 0.157
+
+    def half_width(self, dim: int) -> Float64[np.ndarray, "{dim}"]:
+        """See `Box`; joints are only limited by the robot."""
+        half_width = np.full(dim, np.inf)
+        half_width[:3], half_width[3:6] = self.position_m, self.rotation_rad
+        return half_width
+
+
+@dataclass(frozen=True)
+class RectangleBox:
+    """Half widths of the box around an initial rectangle; its opening is limited by the gripper alone.
+
+    Args:
+        centre_px: for both coordinates of the centre.
+        angle_rad: for the angle. From pi / 2 on, every angle can be reached.
+    """
+
+    centre_px: float
+    angle_rad: float
+
+    def half_width(self, dim: int) -> Float64[np.ndarray, "{dim}"]:
+        """See `Box`."""
+        return np.array([self.centre_px, self.centre_px, self.angle_rad, np.inf])
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,10 +73,9 @@ class Bounds:
             raise ValueError("a lower limit of the bounds lies above its upper limit")
 
     @classmethod
-    def around(cls, initial: Float64[np.ndarray, "s d"], space: GraspSpace, size: BoxSize) -> "Bounds":
-        """The paper's box: the palm near its initial pose, the joints anywhere within their limits."""
-        half_width = np.full(space.dim, np.inf)
-        half_width[:3], half_width[3:6] = size.position_m, size.rotation_rad
+    def around(cls, initial: Float64[np.ndarray, "s d"], space: GraspSpace, size: Box) -> "Bounds":
+        """The box around each initial grasp, within the limits of the grasp space."""
+        half_width = size.half_width(space.dim)
         lower = np.maximum(initial - half_width, space.lower)
         return cls(lower, np.minimum(initial + half_width, space.upper))
 

@@ -1,0 +1,130 @@
+"""From an RGB-D view to a ranked grasp of a two-finger gripper (paper, section 4.4)."""
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import torch
+from jaxtyping import Float64
+
+from preshape.checkpoints import load_weights
+from preshape.cornell.object_finder import FinderSettings, centre_of, find_object
+from preshape.cornell.rectangle import GraspRectangle
+from preshape.cornell.rectangle_views import RectangleViewSettings, rectangle_image, rectangle_view
+from preshape.grasps.rectangle_space import JAW_PX, rectangle_of
+from preshape.grasps.space import GraspSpace
+from preshape.models.success_model import SuccessModel
+from preshape.perception.observation import Observation
+from preshape.perception.view_batch import ViewBatch
+from preshape.planning.bounds import Bounds, RectangleBox
+from preshape.planning.objective import Objective, SuccessObjective, UnknownSuccess
+from preshape.planning.planner import Planner
+from preshape.planning.result import PlanResult
+
+
+@dataclass(frozen=True)
+class RectangleStarts:
+    """Initial rectangles: at the centre of the object, in random directions.
+
+    Args:
+        count: how many; the paper has 4.
+        opening_px: their opening; the paper has 30.
+    """
+
+    count: int = 4
+    opening_px: float = 30.0
+
+    def around(self, centre: tuple[float, float], rng: np.random.Generator) -> Float64[np.ndarray, "s 4"]:
+        """Theta of each; a smaller count gives the first ones of a larger.
+
+        Args:
+            centre: of the object (u, v in pixels).
+            rng: source of the directions.
+        """
+        angles = rng.uniform(0, math.pi, self.count)
+        return np.array([(*centre, angle, self.opening_px) for angle in angles])
+
+
+@dataclass(frozen=True, eq=False)
+class RectanglePlan:
+    """What a planner found in one view.
+
+    Args:
+        planner: name of the planner.
+        result: the rectangles as theta = (u, v, angle, opening); its angle may be any.
+        jaw_px: width of the jaws.
+    """
+
+    planner: str
+    result: PlanResult
+    jaw_px: float
+
+    @property
+    def best(self) -> GraspRectangle:
+        """The rectangle to try first."""
+        return self.rectangle(self.result.best)
+
+    def rectangle(self, start: int) -> GraspRectangle:
+        """The rectangle planned from a start."""
+        return rectangle_of(self.result.theta[start], self.jaw_px)
+
+    def initial(self, start: int) -> GraspRectangle:
+        """The rectangle of a start before planning."""
+        return rectangle_of(self.result.initial_theta[start], self.jaw_px)
+
+
+@dataclass(frozen=True, eq=False)
+class RectanglePlanner:
+    """Plans rectangles for the object in a view: finds it, and climbs from rectangles at its centre.
+
+    Args:
+        name: name of the planner.
+        method: the planner.
+        box: how far it may go from an initial rectangle.
+        space: what theta means.
+        starts: the initial rectangles.
+        views: how the network wants to see images.
+        finder: how the object is found.
+        model: a trained network that judges rectangles; None if nothing is known about them.
+        jaw_px: width of the jaws.
+    """
+
+    name: str
+    method: Planner
+    box: RectangleBox
+    space: GraspSpace
+    starts: RectangleStarts
+    views: RectangleViewSettings
+    finder: FinderSettings
+    model: SuccessModel | None = None
+    jaw_px: float = JAW_PX
+
+    def with_network(self, model: SuccessModel, weights: str | Path) -> "RectanglePlanner":
+        """The same planner with a network, into which trained weights are read.
+
+        Raises:
+            InputError: if the weights cannot be used.
+        """
+        load_weights(weights, model)
+        return replace(self, model=model)
+
+    def plan(self, observation: Observation, rng: np.random.Generator) -> RectanglePlan:
+        """Plan for the object on the table.
+
+        Raises:
+            InputError: if no object can be made out.
+        """
+        centre = centre_of(find_object(observation, self.finder))
+        return self.plan_from(observation, self.starts.around(centre, rng))
+
+    def plan_from(self, observation: Observation, initial: Float64[np.ndarray, "s 4"]) -> RectanglePlan:
+        """Plan from initial rectangles, so that planners can be compared."""
+        image = torch.from_numpy(rectangle_image(observation, self.views))[None]
+        return self.plan_in(rectangle_view(image, self.views.step_px), initial)
+
+    def plan_in(self, view: ViewBatch, initial: Float64[np.ndarray, "s 4"]) -> RectanglePlan:
+        """Plan in a view that has been made before."""
+        objective: Objective = UnknownSuccess() if self.model is None else SuccessObjective(self.model, view)
+        bounds = Bounds.around(initial, self.space, self.box)
+        return RectanglePlan(self.name, self.method.plan(objective, initial, bounds), self.jaw_px)
