@@ -57,17 +57,18 @@ class Augmentation:
 
     def seen_otherwise(
         self, images: Float[Tensor, "b 8 h w"], theta: Float[Tensor, "b 4"], rng: np.random.Generator
-    ) -> tuple[Float[Tensor, "b 8 h w"], Float[Tensor, "b 4"]]:
-        """The images in another light, and half of them mirrored with their grasps."""
-        images, theta = images.clone(), theta.clone()
+    ) -> Float[Tensor, "b 4"]:
+        """Change images in place: put them into another light, and mirror half of them; theta after that."""
         if self.light:
             noise = torch.from_numpy(self.light * rng.standard_normal((len(images), 4))).to(images)
-            colours = images[:, :COLOURS] * (1 + noise[:, :3, None, None]) + noise[:, 3:, None, None]
-            images[:, :COLOURS] = colours.clamp(0, 1)
-        if self.mirrored:
-            rows = torch.from_numpy(rng.integers(0, 2, len(images)).astype(bool))
-            images[rows], theta[rows] = mirrored_images(images[rows]), mirrored_theta(theta[rows])
-        return images, theta
+            colours = images[:, :COLOURS]
+            colours.mul_(1 + noise[:, :3, None, None]).add_(noise[:, 3:, None, None]).clamp_(0, 1)
+        if not self.mirrored:
+            return theta
+        mirrored = torch.from_numpy(rng.integers(0, 2, len(images)).astype(bool))
+        for row in mirrored.nonzero()[:, 0].tolist():
+            images[row] = mirrored_image(images[row])
+        return torch.where(mirrored[:, None], mirrored_theta(theta), theta)
 
     def drawn_background(
         self, positives: Sequence[GraspRectangle], rng: np.random.Generator
@@ -98,10 +99,10 @@ def is_background(rectangle: GraspRectangle, positives: Sequence[GraspRectangle]
     )
 
 
-def mirrored_images(images: Float[Tensor, "b 8 h w"]) -> Float[Tensor, "b 8 h w"]:
-    """Images with left and right exchanged, normals too."""
-    mirrored = images.flip(-1)
-    mirrored[:, NORMALS.start] *= -1
+def mirrored_image(image: Float[Tensor, "8 h w"]) -> Float[Tensor, "8 h w"]:
+    """An image with left and right exchanged, normals too."""
+    mirrored = image.flip(-1)
+    mirrored[NORMALS.start] *= -1
     return mirrored
 
 

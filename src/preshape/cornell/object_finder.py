@@ -41,9 +41,7 @@ class FinderSettings:
     tall_share: float = 0.3
 
 
-def find_object(
-    observation: Observation, settings: FinderSettings | None = None
-) -> Bool[np.ndarray, "h w"]:
+def find_object(observation: Observation, settings: FinderSettings | None = None) -> Bool[np.ndarray, "h w"]:
     """Pixels of the object on the table: the largest region that is higher, or of another colour.
 
     Raises:

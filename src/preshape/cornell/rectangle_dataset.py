@@ -85,7 +85,7 @@ class RectangleDataset(Dataset[GraspBatch]):
         self.trials = trials
         self.theta: Float[Tensor, "n d"] = torch.as_tensor(trials.reached, dtype=torch.float32)
         self.labels: Float[Tensor, "n"] = torch.as_tensor(trials.lifted.astype(np.float32))
-        self._images, self._step_px, self._augmentation = images, step_px, augmentation
+        self.images, self._step_px, self._augmentation = images, step_px, augmentation
 
     def __len__(self) -> int:
         return len(self.trials)
@@ -93,7 +93,7 @@ class RectangleDataset(Dataset[GraspBatch]):
     def lifted(self) -> "RectangleDataset":
         """The positive rectangles."""
         trials = self.trials.where(self.trials.lifted)
-        return RectangleDataset(trials, self._images, self._step_px, self._augmentation)
+        return RectangleDataset(trials, self.images, self._step_px, self._augmentation)
 
     def with_images(self, images: Mapping[int, LoadedImage]) -> "RectangleDataset":
         """The same rectangles with these images."""
@@ -106,7 +106,7 @@ class RectangleDataset(Dataset[GraspBatch]):
             low = np.maximum(centres.min(axis=0) - AROUND_PX, 0) // self._step_px
             high = (centres.max(axis=0) + AROUND_PX) // self._step_px + 1
             (left, top), (right, bottom) = low.astype(int), high.astype(int)
-            yield self._images[number].view[:, top:bottom, left:right]
+            yield self.images[number].view[:, top:bottom, left:right]
 
     def __getitem__(self, rows: Sequence[int] | DrawnRows) -> GraspBatch:
         """The examples of these rows as one batch; varied, and with background, if they were drawn."""
@@ -120,7 +120,7 @@ class RectangleDataset(Dataset[GraspBatch]):
         return self._batch(loaded + behind, torch.cat((theta, background)), labels, rng)
 
     def _loaded(self, rows: Sequence[int]) -> list[LoadedImage]:
-        return [self._images[number] for number in self.trials.scene_ids[rows].tolist()]
+        return [self.images[number] for number in self.trials.scene_ids[rows].tolist()]
 
     def _background(
         self, loaded: Sequence[LoadedImage], rng: np.random.Generator
@@ -145,5 +145,5 @@ class RectangleDataset(Dataset[GraspBatch]):
     ) -> GraspBatch:
         images = torch.stack([own.view for own in loaded]).float()
         if rng is not None:
-            images, theta = self._augmentation.seen_otherwise(images, theta, rng)
+            theta = self._augmentation.seen_otherwise(images, theta, rng)
         return GraspBatch(rectangle_view(images, self._step_px), theta, labels)

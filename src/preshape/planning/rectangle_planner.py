@@ -107,7 +107,11 @@ class RectanglePlanner:
             InputError: if the weights cannot be used.
         """
         load_weights(weights, model)
-        return replace(self, model=model)
+        return self.with_model(model)
+
+    def with_model(self, model: SuccessModel, method: Planner | None = None) -> "RectanglePlanner":
+        """The same planner with a trained network, and perhaps another method."""
+        return replace(self, model=model, method=method or self.method)
 
     def plan(self, observation: Observation, rng: np.random.Generator) -> RectanglePlan:
         """Plan for the object on the table.

@@ -1,0 +1,171 @@
+"""The protocols of the Cornell data over trained folds: recognition and detection, image-wise and object-wise."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from preshape.checkpoints import load_weights
+from preshape.cornell.data_module import CornellDataModule
+from preshape.cornell.detection import Detection, Detector
+from preshape.data.folds import FOLDS, SplitScheme
+from preshape.errors import InputError
+from preshape.evaluation.intervals import wilson
+from preshape.evaluation.metrics import classification_metrics
+from preshape.files import read_json, write_json
+from preshape.models.success_model import SuccessModel
+from preshape.progress import Progress
+from preshape.training import METRICS_FILE, WEIGHTS_FILE
+
+PROTOCOLS = {SplitScheme.SCENES: "image_wise", SplitScheme.UNSEEN: "object_wise"}
+"""Names of the literature for the splits."""
+DETECTIONS_FILE = "detections.json"
+RECOGNITION = ("accuracy", "auc", "ap", "brier", "ece")
+
+Parts = Callable[[str, int], tuple[CornellDataModule, SuccessModel]]
+"""Data and network of a fold, by split and number."""
+
+
+@dataclass(frozen=True, eq=False)
+class FoldOutcome:
+    """What came out of a fold.
+
+    Args:
+        split: how its images were held out.
+        predictions: labels and predicted probabilities of its test rectangles.
+        detections: what was proposed for its test images.
+    """
+
+    split: str
+    predictions: pd.DataFrame
+    detections: Sequence[Detection]
+
+
+def evaluate_folds(group: Path, splits: Sequence[str], parts: Parts, detector: Detector) -> list[FoldOutcome]:
+    """Detect in the test images of every trained fold; writes each fold's detections beside its weights.
+
+    Args:
+        group: folder of a sweep of `src/train.py`.
+        splits: of which splits.
+        parts: makes data and network of a fold.
+        detector: proposes rectangles.
+
+    Raises:
+        InputError: if a fold was not trained, or was with other data.
+    """
+    folds = [(split, fold) for split in splits for fold in range(FOLDS)]
+    folders = {key: group / f"{key[0]}_fold{key[1]}" for key in folds}
+    _check_trained(folders.values())
+    centres: dict[int, tuple[float, float]] = {}
+    outcomes = []
+    with Progress("Detecting", len(folds), "folds") as progress:
+        for (split, fold), folder in folders.items():
+            data, model = parts(split, fold)
+            detections = _detect(folder, data, model, detector, centres)
+            content = {"detections": [own.to_dict() for own in detections]}
+            write_json(folder / DETECTIONS_FILE, content)
+            predictions = pd.read_parquet(folder / "predictions.parquet")
+            outcomes.append(FoldOutcome(split, predictions, detections))
+            progress.advance()
+    return outcomes
+
+
+def _check_trained(folders: Iterable[Path]) -> None:
+    missing = [folder for folder in folders if not (folder / METRICS_FILE).is_file()]
+    if missing:
+        raise InputError(
+            f"{len(missing)} folds were not trained",
+            where=missing[0],
+            fix="train them with `python src/train.py --multirun` and the same model and dataset, "
+            "split=scenes,unseen fold=0,1,2,3,4",
+        )
+
+
+def _detect(
+    folder: Path,
+    data: CornellDataModule,
+    model: SuccessModel,
+    detector: Detector,
+    centres: dict[int, tuple[float, float]],
+) -> list[Detection]:
+    data.setup()
+    if read_json(folder / METRICS_FILE)["identity"]["data"] != data.data_hash:
+        raise InputError(
+            "The fold was trained with other data", where=folder, fix="train it again, or give its data"
+        )
+    data.render(with_patches=True)
+    load_weights(folder / WEIGHTS_FILE, model)
+    detections = []
+    for image in data.test_images:
+        number = image.files.number
+        if number not in centres:
+            centres[number] = detector.centre(image)
+        detections += detector.detect(data.test.images[number], centres[number], model)
+    return detections
+
+
+def result_rows(name: str, outcomes: Sequence[FoldOutcome], seed: int) -> list[dict[str, Any]]:
+    """Rows of the result file: for each protocol, recognition and then detection over all folds together.
+
+    Recognition has bootstrap intervals over images, detection Wilson's.
+
+    Args:
+        name: of the data set.
+        outcomes: of all folds.
+        seed: of the bootstrap.
+    """
+    rows = []
+    for split, protocol in PROTOCOLS.items():
+        own = [outcome for outcome in outcomes if outcome.split == split]
+        if own:
+            head = {"data": name, "folds": protocol}
+            rows += [head | row for row in (*_recognition(own, seed), *_detection_rates(own))]
+    return rows
+
+
+def _recognition(outcomes: Sequence[FoldOutcome], seed: int) -> list[dict[str, Any]]:
+    table = pd.concat([outcome.predictions for outcome in outcomes])
+    metrics = classification_metrics(
+        table["lifted"].to_numpy(dtype=bool),
+        table["success_prob"].to_numpy(dtype=float),
+        rng=np.random.default_rng(seed),
+        groups=table["scene_id"].to_numpy(),
+        threshold=0.5,
+    ).to_dict()
+    rows = []
+    for name in RECOGNITION:
+        value = metrics[name]
+        own = value if isinstance(value, Mapping) else _with_interval(value, metrics["intervals"].get(name))
+        rows.append({"metric": f"recognition_{name}", **own, "n": metrics["n"]})
+    return rows
+
+
+def _with_interval(value: float, interval: Sequence[float] | None) -> dict[str, Any]:
+    low, high = interval or (None, None)
+    return {"value": value, "low": low, "high": high}
+
+
+def _detection_rates(outcomes: Sequence[FoldOutcome]) -> list[dict[str, Any]]:
+    correct: dict[tuple[str, int], list[Detection]] = {}
+    for outcome in outcomes:
+        for own in outcome.detections:
+            starts = 0 if own.method == "grid" else own.starts
+            correct.setdefault((own.method, starts), []).append(own)
+    rows = []
+    for (method, starts), detections in sorted(correct.items()):
+        n, right = len(detections), sum(own.correct for own in detections)
+        low, high = wilson(right, n)
+        rows.append(
+            {
+                "metric": f"detection_{method}" + (f"_{starts}" if starts else ""),
+                "value": right / n,
+                "low": low,
+                "high": high,
+                "n": n,
+                "predicted": float(np.mean([own.success_prob for own in detections])),
+            }
+        )
+    return rows
