@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from analysis.cornell_protocols import detection_sheet, recognition_roc
 from analysis.cornell_sheet import contact_sheet
 from analysis.cornell_surfaces import surface_figures
 from analysis.cornell_tables import page
@@ -13,7 +14,7 @@ from preshape.cornell.folds import image_folds, object_folds
 from preshape.cornell.rectangle_metric import is_correct
 from preshape.drawing.picture_files import save_picture
 from preshape.evaluation.intervals import wilson
-from preshape.files import atomic_path, write_json
+from preshape.files import atomic_path, read_json, write_json
 from preshape.provenance import provenance
 
 
@@ -23,10 +24,13 @@ class CornellReport:
 
     Args:
         root: folder of the data set.
-        output: folder for `cornell.json`, `cornell.md` and `contact_sheet.png`.
+        output: folder for `cornell.json`, `cornell.md` and pictures.
         shown: how many images the contact sheet has.
         compared: of how many images both surfaces are compared where both are there.
         seed: of the folds.
+        results: result file of `src/detect.py`.
+        runs: folder of the sweep that was detected with; None for no pictures of it.
+        name: of the rows in the result file that are about this data.
     """
 
     root: str
@@ -34,6 +38,9 @@ class CornellReport:
     shown: int
     compared: int
     seed: int
+    results: str
+    runs: str | None = None
+    name: str = "cornell"
 
     def write(self) -> str:
         """Write everything and say what came out.
@@ -46,17 +53,36 @@ class CornellReport:
             "folds": fold_sizes(data, self.seed),
             "metric": metric_figures(data),
             "surfaces": surface_figures(data, self.compared),
+            "protocols": read_json(self.results)["runs"] if Path(self.results).is_file() else [],
         }
         folder = Path(self.output)
         write_json(folder / "cornell.json", provenance(self.seed) | figures)
         save_picture(folder / "contact_sheet.png", contact_sheet(data, self.shown))
+        pictures = self._pictures(data, folder)
         with atomic_path(folder / "cornell.md") as temporary:
-            temporary.write_text(page(figures), encoding="utf-8")
+            temporary.write_text(page(figures, self.name, pictures), encoding="utf-8")
         return (
             f"{figures['images']} images of {figures['objects']} objects, {figures['positives']} positive "
             f"and {figures['negatives']} negative rectangles, {sum(figures['dropped'].values())} dropped: "
             f"{folder / 'cornell.md'}"
         )
+
+    def _pictures(self, data: CornellDataSet, folder: Path) -> dict[str, str]:
+        """Pictures of recognition and detection as far as there are runs: captions by file."""
+        if self.runs is None:
+            return {}
+        runs = Path(self.runs)
+        figures = {
+            "roc.png": ("Receiver operating characteristic of recognition", recognition_roc(runs)),
+            "detections.png": (
+                "Labelled rectangles (blue), the best of four initial ones (orange), inference from these (green)",
+                detection_sheet(data, runs, self.shown),
+            ),
+        }
+        for name, (_, figure) in figures.items():
+            if figure is not None:
+                save_picture(folder / name, figure)
+        return {name: caption for name, (caption, figure) in figures.items() if figure is not None}
 
 
 def counts(data: CornellDataSet) -> dict[str, Any]:

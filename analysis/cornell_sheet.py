@@ -1,5 +1,7 @@
 """A contact sheet of the Cornell data: images with their rectangles."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -7,9 +9,10 @@ from matplotlib.patches import Patch
 
 from analysis.cornell_surfaces import spread
 from analysis.dataset_charts import BLUE, ORANGE
-from preshape.cornell.data_set import CornellDataSet, CornellImage
+from preshape.cornell.data_set import CornellDataSet
 from preshape.cornell.image_files import read_colour
 from preshape.cornell.layout import HEIGHT, WIDTH
+from preshape.cornell.rectangle import GraspRectangle
 
 ACROSS = 4
 MARGIN_PX = 20
@@ -28,10 +31,8 @@ def contact_sheet(data: CornellDataSet, shown: int) -> Figure:
         axes.imshow(read_colour(image.files.colour))
         for rectangles, colour in ((image.negatives, ORANGE), (image.positives, BLUE)):
             for rectangle in rectangles:
-                corners = rectangle.corners()
-                axes.plot(*corners[[0, 1]].T, *corners[[2, 3]].T, color=colour, linewidth=0.6)
-                axes.plot(*corners[[1, 2]].T, *corners[[3, 0]].T, color=colour, linewidth=1.8)
-        _show_only_around(axes, image)
+                draw_rectangle(axes, rectangle, colour, 0.6)
+        show_around(axes, image.positives + image.negatives)
         axes.set_title(f"{image.files.number:04d} {image.subject.category.replace('_', ' ')}", fontsize=9)
     for axes in figure.axes:
         axes.set_axis_off()
@@ -40,9 +41,15 @@ def contact_sheet(data: CornellDataSet, shown: int) -> Figure:
     return figure
 
 
-def _show_only_around(axes: Axes, image: CornellImage) -> None:
-    """Show the part of the image with the rectangles, in the proportions of the image."""
-    rectangles = image.positives + image.negatives
+def draw_rectangle(axes: Axes, rectangle: GraspRectangle, colour: str, width: float) -> None:
+    """Draw a rectangle; the edges that are its jaws are three times as thick."""
+    corners = rectangle.corners()
+    axes.plot(*corners[[0, 1]].T, *corners[[2, 3]].T, color=colour, linewidth=width)
+    axes.plot(*corners[[1, 2]].T, *corners[[3, 0]].T, color=colour, linewidth=3 * width)
+
+
+def show_around(axes: Axes, rectangles: Sequence[GraspRectangle]) -> None:
+    """Show the part of the image with these rectangles, in the proportions of the image."""
     if not rectangles:
         return
     corners = np.concatenate([rectangle.corners() for rectangle in rectangles])

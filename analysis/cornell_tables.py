@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from analysis.cornell_protocols import protocol_table
 from analysis.wording import plain_name, table_row
 from preshape.provenance import command_line, git_revision
 
@@ -11,8 +12,14 @@ COUNTS = ("images", "objects", "categories", "backgrounds", "positives", "negati
 COLUMNS = ("images", "objects", "positives", "negatives")
 
 
-def page(figures: Mapping[str, Any]) -> str:
-    """Markdown with the figures that `CornellReport` gathers."""
+def page(figures: Mapping[str, Any], name: str, pictures: Mapping[str, str]) -> str:
+    """Markdown with the figures that `CornellReport` gathers.
+
+    Args:
+        figures: the figures.
+        name: of the rows about this data among the protocols.
+        pictures: captions of the pictures of the protocols, by their files.
+    """
     parts = [
         ["# The Cornell grasp data set"],
         [f"Made by `{command_line()}` at revision `{git_revision()}`."],
@@ -21,6 +28,9 @@ def page(figures: Mapping[str, Any]) -> str:
         _metric(figures["metric"]),
         _surfaces(figures["surfaces"]),
         ["![Images with positive (blue) and negative (orange) rectangles](contact_sheet.png)"],
+        ["## Recognition and detection"],
+        protocol_table(figures["protocols"], name),
+        *([f"![{caption}]({file})"] for file, caption in pictures.items()),
     ]
     return "\n\n".join("\n".join(part) for part in parts) + "\n"
 

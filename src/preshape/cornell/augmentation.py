@@ -1,4 +1,4 @@
-"""More examples from few: mirrored images, moved rectangles, other light, and rectangles of the background."""
+"""More examples from few: mirrored images, moved rectangles, other light, rectangles of the background."""
 
 import math
 from collections.abc import Sequence

@@ -1,6 +1,7 @@
 """The object in an image of a table, found by its height and by its colour.
 
-Objects of the Cornell data can be as flat as a pen, which depth cannot tell from the table, or have its colour.
+Objects of the Cornell data can be as flat as a pen, which depth cannot tell from the table, or have its
+colour.
 """
 
 from dataclasses import dataclass

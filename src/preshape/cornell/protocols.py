@@ -1,4 +1,4 @@
-"""The protocols of the Cornell data over trained folds: recognition and detection, image-wise and object-wise."""
+"""The protocols of the Cornell data over trained folds: recognition and detection."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass

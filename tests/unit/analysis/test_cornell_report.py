@@ -18,7 +18,9 @@ def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def report(root: Path, output: Path) -> CornellReport:
-    return CornellReport(root=str(root), output=str(output), shown=3, compared=2, seed=0)
+    return CornellReport(
+        root=str(root), output=str(output), shown=3, compared=2, seed=0, results=str(output / "none.json")
+    )
 
 
 def test_the_report_says_what_there_is(root: Path, tmp_path: Path) -> None:
