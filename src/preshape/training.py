@@ -13,7 +13,7 @@ from typing import Any, Literal
 import lightning
 from safetensors.torch import save
 
-from preshape.checkpoints import save_weights, sidecar_path
+from preshape.checkpoints import load_weights, save_weights, sidecar_path
 from preshape.data.labelled_data import LabelledData
 from preshape.evaluation.grasp_errors import GraspErrors
 from preshape.evaluation.metrics import ClassificationMetrics
@@ -93,13 +93,16 @@ def train(
         description: what else the file of the metrics shall say.
 
     Raises:
-        InputError: if the data cannot be used or the files cannot be written.
+        InputError: if the data, or weights to start from, cannot be used, or files cannot be written.
     """
     data.setup()
     if isinstance(model, RegressionCNN):
         data.keep_lifted()
     data.render(with_patches="patch" in model.looks_at)
     model.fit_statistics(data.train.patches(), data.train.theta)
+    if settings.learning.start is not None:
+        load_weights(settings.learning.start, model)  # with the statistics that they are used to
+        model.train()
     unfinished = folder / f"unfinished-{_identity(model, data, settings)}.ckpt"
     curves = _fit(model, data, settings, unfinished, run)
     if isinstance(model, SuccessModel):

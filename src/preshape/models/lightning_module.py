@@ -33,6 +33,7 @@ class LearningSettings:
             the first tenth of the iterations and down to nothing along a cosine (Smith and Topin 2018).
         weight_decay: decoupled from the gradients (Loshchilov and Hutter 2019); 0 is the paper's Adam.
         seed: seed of dropout.
+        start: file of weights from which the network learns on; None for its random ones.
     """
 
     iterations: int
@@ -40,6 +41,7 @@ class LearningSettings:
     schedule: Schedule
     weight_decay: float
     seed: int
+    start: str | None = None
 
 
 class GraspLightningModule(lightning.LightningModule, ABC):
