@@ -75,7 +75,7 @@ class CornellReport:
         figures = {
             "roc.png": ("Receiver operating characteristic of recognition", recognition_roc(runs)),
             "detections.png": (
-                "Labelled rectangles (blue), best of four initial ones (orange), inference from these (green)",
+                "Labels (blue), the best of four initial rectangles (orange), inference from these (green)",
                 detection_sheet(data, runs, self.shown),
             ),
         }

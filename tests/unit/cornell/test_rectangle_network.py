@@ -99,11 +99,11 @@ def test_the_angle_goes_round(view: ViewBatch) -> None:
     """A full turn changes nothing, and there is no jump at 0, nor at half a turn."""
     model = network()
     features = model.features(view)
-    turns = THETA + torch.tensor([0.0, 0.0, 2 * math.pi, 0.0])
+    turns = THETA + torch.tensor([0.0, 0.0, 2 * math.pi, 0.0], dtype=torch.float64)
     torch.testing.assert_close(model.raw_head(features, turns), model.raw_head(features, THETA))
     for angle in (0.0, math.pi):
         near = THETA[:1].repeat(2, 1)
-        near[:, 2] = angle + torch.tensor([-1e-6, 1e-6])
+        near[:, 2] = angle + torch.tensor([-1e-6, 1e-6], dtype=torch.float64)
         below, above = model.raw_head(features, near)
         assert below.item() == pytest.approx(above.item(), abs=1e-4)
         assert rectangle_of(near[0].numpy()).angle_rad == pytest.approx(math.pi, abs=1e-5)
@@ -112,7 +112,7 @@ def test_the_angle_goes_round(view: ViewBatch) -> None:
 def test_half_a_turn_exchanges_the_fingers_and_turns_the_patches(view: ViewBatch) -> None:
     model = network(turned_normals=True)
     palm, fingers = model._patches(view, THETA)
-    turned_palm, turned_fingers = model._patches(view, THETA + torch.tensor([0.0, 0.0, math.pi, 0.0]))
+    turned_palm, turned_fingers = model._patches(view, THETA + torch.tensor([0.0, 0.0, math.pi, 0.0], dtype=torch.float64))
     sign = torch.ones(8, 1, 1, dtype=torch.float64)
     sign[4:6] = -1
     torch.testing.assert_close(turned_palm, sign * palm.flip(-1, -2))
