@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from synthetic_cornell import BLOCK, write_cornell
+from synthetic_cornell import BLOCK, surface_points, write_cornell
 
 from preshape.cornell.augmentation import Augmentation, is_background
 from preshape.cornell.data_module import AugmentedBatchSettings, CornellDataModule
@@ -19,6 +19,7 @@ from preshape.cornell.view_store import ViewStore
 from preshape.cornell.views import load_cornell_view
 from preshape.data.folds import HoldOut
 from preshape.errors import InputError
+from preshape.geometry.pose import invert_pose, transform_points
 from preshape.grasps.rectangle_space import rectangle_of, rectangle_space
 from preshape.perception.observation import Observation
 
@@ -135,19 +136,23 @@ def test_a_step_that_does_not_divide_the_image_is_refused(observation: Observati
         rectangle_image(observation, RectangleViewSettings(step_px=7))
 
 
+def bare_table(observation: Observation) -> np.ndarray:
+    """Depth of the view without the block."""
+    points = surface_points(observation.camera, block_m=0.0)
+    depth = transform_points(invert_pose(observation.camera.T_world_camera), points)[..., 2]
+    return np.asarray(depth, dtype=np.float32)
+
+
 @pytest.mark.parametrize("hidden", [(), ("depth",), ("colour",)])
 def test_the_object_is_found_by_height_or_by_colour(observation: Observation, hidden: Sequence[str]) -> None:
-    flat = observation.depth.copy()
-    if "depth" in hidden:  # as flat as a pen: the block's rows continue the table beside it
-        flat[BLOCK] = observation.depth[240:300, 200:280]
+    depth = bare_table(observation) if "depth" in hidden else observation.depth  # as flat as a pen
     rgb = np.full_like(observation.rgb, 220) if "colour" in hidden else observation.rgb
-    mask = find_object(replace(observation, depth=flat, rgb=rgb))
+    mask = find_object(replace(observation, depth=depth, rgb=rgb))
     u, v = centre_of(mask)
     assert np.hypot(u - 319.5, v - 269.5) < 12
 
 
 def test_a_bare_table_is_refused(observation: Observation) -> None:
-    bare = observation.depth.copy()
-    bare[BLOCK] = observation.depth[240:300, 200:280]
+    rgb = np.full_like(observation.rgb, 220)
     with pytest.raises(InputError, match="No object lies on the table"):
-        find_object(replace(observation, depth=bare, rgb=np.full_like(observation.rgb, 220)))
+        find_object(replace(observation, depth=bare_table(observation), rgb=rgb))

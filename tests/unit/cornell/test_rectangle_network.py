@@ -112,7 +112,9 @@ def test_the_angle_goes_round(view: ViewBatch) -> None:
 def test_half_a_turn_exchanges_the_fingers_and_turns_the_patches(view: ViewBatch) -> None:
     model = network(turned_normals=True)
     palm, fingers = model._patches(view, THETA)
-    turned_palm, turned_fingers = model._patches(view, THETA + torch.tensor([0.0, 0.0, math.pi, 0.0], dtype=torch.float64))
+    turned_palm, turned_fingers = model._patches(
+        view, THETA + torch.tensor([0.0, 0.0, math.pi, 0.0], dtype=torch.float64)
+    )
     sign = torch.ones(8, 1, 1, dtype=torch.float64)
     sign[4:6] = -1
     torch.testing.assert_close(turned_palm, sign * palm.flip(-1, -2))
