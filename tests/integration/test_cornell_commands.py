@@ -35,7 +35,7 @@ def test_folds_are_trained_and_detected_in(tmp_path: Path) -> None:
 
     result = tmp_path / "cornell.json"
     detected = run(
-        *("detect.py", tmp_path, f"runs={group}", "splits=[unseen]", f"output={result}"),
+        *("detect.py", tmp_path, f"runs='{group}'", "splits=[unseen]", f"output={result}"),
         *("detector.counts=[1,2]", "detector.planner.starts.count=2", "detector.grid.step_px=60"),
         "detector.grid.angles=2",
     )
@@ -45,7 +45,3 @@ def test_folds_are_trained_and_detected_in(tmp_path: Path) -> None:
     assert rows["recognition_accuracy"]["n"] == 10
     assert rows["detection_inference_2"]["n"] == rows["detection_grid"]["n"] == 5
     assert (group / "unseen_fold0" / "detections.json").is_file()
-
-    again = run("detect.py", tmp_path, f"runs={group}", f"output={result}")
-    assert again.returncode == 2, again.stderr
-    assert "5 folds were not trained" in again.stderr

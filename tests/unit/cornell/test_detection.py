@@ -16,12 +16,13 @@ from preshape.cornell.detection import Detection, Detector, RectangleGrid
 from preshape.cornell.layout import ImageFiles
 from preshape.cornell.object_finder import FinderSettings
 from preshape.cornell.object_list import Subject
-from preshape.cornell.protocols import FoldOutcome, result_rows
+from preshape.cornell.protocols import FoldOutcome, evaluate_folds, result_rows
 from preshape.cornell.rectangle import GraspRectangle
 from preshape.cornell.rectangle_dataset import LoadedImage
 from preshape.cornell.rectangle_metric import angle_between
 from preshape.cornell.rectangle_views import RectangleViewSettings
 from preshape.cornell.result_file import merge_rows, summary
+from preshape.errors import InputError
 from preshape.files import read_json
 from preshape.grasps.rectangle_space import rectangle_space, theta_of
 from preshape.models.success_model import SuccessModel
@@ -96,6 +97,11 @@ def test_more_starts_are_never_worse_and_the_first_ones_stay() -> None:
     few, many = (RectangleStarts(n).around(CENTRE, np.random.default_rng(3)) for n in (2, 64))
     np.testing.assert_array_equal(few, many[:2])
     assert (many[:, 3] == 30).all()
+
+
+def test_folds_that_were_not_trained_are_named(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="10 folds were not trained"):
+        evaluate_folds(tmp_path, ["scenes", "unseen"], lambda split, fold: None, make_detector())
 
 
 def detection(image: int, method: str, starts: int, correct: bool) -> Detection:
