@@ -1,6 +1,5 @@
 """The right Allegro hand of the `example-robot-data` package, made fit for simulation."""
 
-from collections.abc import Iterable
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -10,6 +9,8 @@ from lxml import etree
 from lxml.builder import E
 
 from preshape.errors import InputError
+from sim.robots.hand_model import HandModel
+from sim.robots.inertia import numbers, spread_over_boxes
 
 PALM_LINK = "palm_link"
 FLANGE_TO_PALM_LINK_M = 0.095
@@ -33,6 +34,30 @@ def finger_joints(finger: str) -> tuple[str, ...]:
 def fingertip_link(finger: str) -> str:
     """Name of the link at the tip of a finger."""
     return f"link_{FINGERS[finger] + 3}.0_tip"
+
+
+def allegro_hand(torque_limit: float) -> HandModel:
+    """The hand as an arm carries it.
+
+    Its palm frame is its palm link's: x out of the palm, z along the middle finger.
+
+    Args:
+        torque_limit: of each joint (Nm).
+
+    Raises:
+        InputError: if the package, or a mesh of it, is not installed.
+    """
+    return HandModel(
+        name="allegro",
+        urdf=load_hand(torque_limit),
+        palm_link=PALM_LINK,
+        flange_to_palm_link_m=FLANGE_TO_PALM_LINK_M,
+        fingers={finger: finger_joints(finger) for finger in FINGERS},
+        fingertip_links={finger: fingertip_link(finger) for finger in FINGERS},
+        finger_base_links=tuple(f"link_{first}.0" for first in FINGERS.values()),
+        overlapping_pairs=(),
+        R_link_palm=np.eye(3),
+    )
 
 
 def load_hand(torque_limit: float) -> etree._Element:
@@ -101,22 +126,7 @@ def _mesh_path(uri: str, robots: Path) -> Path:
 def _spread_mass(link: etree._Element) -> None:
     """Place the link's mass evenly over its collision shapes."""
     mass = float(link.find("inertial/mass").attrib["value"])
-    centres, sizes = _boxes(link)
-    shares = mass * sizes.prod(axis=1) / sizes.prod(axis=1).sum()
-    centre = shares @ centres / mass
-    inertia = np.zeros((3, 3))
-    for share, size, offset in zip(shares, sizes, centres - centre, strict=True):
-        inertia += share / 12 * (size @ size * np.eye(3) - np.diag(size**2))
-        inertia += share * (offset @ offset * np.eye(3) - np.outer(offset, offset))
-    link.replace(link.find("inertial"), inertial_element(mass, centre, inertia))
-
-
-def inertial_element(
-    mass: float, centre: Float[np.ndarray, "3"], inertia: Float[np.ndarray, "3 3"]
-) -> etree._Element:
-    """URDF's <inertial> of a mass (kg) at `centre` (m) with an inertia about it (kg m^2)."""
-    entries = {f"i{'xyz'[i]}{'xyz'[j]}": f"{inertia[i, j]:.6g}" for i in range(3) for j in range(i, 3)}
-    return E.inertial(E.origin(xyz=_numbers(centre)), E.mass(value=f"{mass:.6g}"), E.inertia(entries))
+    link.replace(link.find("inertial"), spread_over_boxes(mass, *_boxes(link)))
 
 
 def _boxes(link: etree._Element) -> tuple[Float[np.ndarray, "n 3"], Float[np.ndarray, "n 3"]]:
@@ -135,12 +145,8 @@ def _boxes(link: etree._Element) -> tuple[Float[np.ndarray, "n 3"], Float[np.nda
 
 
 def _box_collision(centre: tuple[float, ...], size: tuple[float, ...]) -> etree._Element:
-    return E.collision(E.origin(xyz=_numbers(centre)), E.geometry(E.box(size=_numbers(size))))
+    return E.collision(E.origin(xyz=numbers(centre)), E.geometry(E.box(size=numbers(size))))
 
 
 def _vector(text: str) -> Float[np.ndarray, "3"]:
     return np.array([float(number) for number in text.split()])
-
-
-def _numbers(vector: Iterable[float]) -> str:
-    return " ".join(f"{number:.6g}" for number in vector)
