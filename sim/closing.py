@@ -1,6 +1,7 @@
 """Closing the hand: constant velocity, every finger stops by itself (paper, section 4.1)."""
 
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 from jaxtyping import Float
@@ -16,9 +17,34 @@ CLOSING_JOINTS = {
 }
 
 
+class Closing(Protocol):
+    """How a hand closes. Lengths of travel are in the unit of its joints, rad or m."""
+
+    @property
+    def lead(self) -> float:
+        """How far a position target may run ahead of its joint; times the drive's stiffness it is the force of
+        the grasp, up to the joint's limit.
+        """
+
+    @property
+    def stopped_travel(self) -> float:
+        """A finger has stopped when none of its closing joints has travelled farther than this ..."""
+
+    @property
+    def stopped_time_s(self) -> float:
+        """... for so long."""
+
+    @property
+    def max_time_s(self) -> float:
+        """When to give up waiting for fingers that never stop."""
+
+    def rule(self, finger: str, grasp_type: GraspType) -> tuple[tuple[int, ...], float]:
+        """Which joints of a finger close, numbered from the palm, and how fast (rad/s or m/s)."""
+
+
 @dataclass(frozen=True)
 class ClosingSettings:
-    """How the hand closes.
+    """How the Allegro hand closes (paper, section 4.1).
 
     Args:
         finger_speed_rad_s, thumb_speed_rad_s: closing speeds.
@@ -36,6 +62,53 @@ class ClosingSettings:
     stopped_time_s: float = 0.2
     max_time_s: float = 2.1
 
+    @property
+    def lead(self) -> float:
+        """See `Closing`."""
+        return self.lead_rad
+
+    @property
+    def stopped_travel(self) -> float:
+        """See `Closing`."""
+        return self.stopped_travel_rad
+
+    def rule(self, finger: str, grasp_type: GraspType) -> tuple[tuple[int, ...], float]:
+        """The joints that the paper names for a grasp of this type."""
+        finger_joints, thumb_joints = CLOSING_JOINTS[grasp_type]
+        if finger == THUMB:
+            return thumb_joints, self.thumb_speed_rad_s
+        return finger_joints, self.finger_speed_rad_s
+
+
+@dataclass(frozen=True)
+class GripperClosing:
+    """How a gripper closes whose fingers slide, each on one joint.
+
+    Args:
+        speed_m_s: of each finger.
+        lead_m, stopped_travel_m, stopped_time_s, max_time_s: see `Closing`.
+    """
+
+    speed_m_s: float = 0.1
+    lead_m: float = 0.01
+    stopped_travel_m: float = 0.0005
+    stopped_time_s: float = 0.1
+    max_time_s: float = 1.0
+
+    @property
+    def lead(self) -> float:
+        """See `Closing`."""
+        return self.lead_m
+
+    @property
+    def stopped_travel(self) -> float:
+        """See `Closing`."""
+        return self.stopped_travel_m
+
+    def rule(self, finger: str, grasp_type: GraspType) -> tuple[tuple[int, ...], float]:
+        """The one joint of the finger, whatever the grasp."""
+        return (0,), self.speed_m_s
+
 
 @dataclass
 class _Finger:
@@ -51,28 +124,25 @@ class ClosingController:
     """Position targets of the hand's joints while it closes.
 
     Args:
-        fingers: name of a finger to the hand-joint numbers of its four joints, palm first.
+        fingers: name of a finger to the hand-joint numbers of its joints, palm first.
         grasp_type: which of the paper's two closing rules applies.
-        preshape: joint angles (rad) at which closing starts.
-        upper: upper joint limits (rad); closing is the positive direction.
-        settings: speeds and thresholds.
+        preshape: joint positions (rad or m) at which closing starts.
+        upper: upper joint limits (rad or m); closing is the positive direction.
+        settings: joints, speeds and thresholds.
     """
 
     fingers: dict[str, tuple[int, ...]]
     grasp_type: GraspType
-    preshape: Float[np.ndarray, "16"]
-    upper: Float[np.ndarray, "16"]
-    settings: ClosingSettings
-    targets: Float[np.ndarray, "16"] = field(init=False)
+    preshape: Float[np.ndarray, "h"]
+    upper: Float[np.ndarray, "h"]
+    settings: Closing
+    targets: Float[np.ndarray, "h"] = field(init=False)
     elapsed_s: float = field(init=False, default=0.0)
 
     def __post_init__(self) -> None:
         self.targets = self.preshape.copy()
-        finger_rule, thumb_rule = CLOSING_JOINTS[self.grasp_type]
         self._fingers = [
-            self._finger(joints, thumb_rule, self.settings.thumb_speed_rad_s)
-            if name == THUMB
-            else self._finger(joints, finger_rule, self.settings.finger_speed_rad_s)
+            self._finger(joints, *self.settings.rule(name, self.grasp_type))
             for name, joints in self.fingers.items()
         ]
 
@@ -87,10 +157,10 @@ class ClosingController:
 
     def update(
         self,
-        positions: Float[np.ndarray, "16"],
+        positions: Float[np.ndarray, "h"],
         period_s: float,
-    ) -> Float[np.ndarray, "16"]:
-        """Targets for the next control period, from measured joint angles (rad)."""
+    ) -> Float[np.ndarray, "h"]:
+        """Targets for the next control period, from measured joint positions (rad or m)."""
         self.elapsed_s += period_s
         for finger in self._fingers:
             if not finger.stopped:
@@ -98,15 +168,15 @@ class ClosingController:
                 self._detect_stop(finger, positions, period_s)
         return self.targets
 
-    def _advance(self, finger: _Finger, positions: Float[np.ndarray, "16"], period_s: float) -> None:
+    def _advance(self, finger: _Finger, positions: Float[np.ndarray, "h"], period_s: float) -> None:
         joints = finger.joints
         wanted = self.targets[joints] + finger.speed * period_s
-        farthest = np.minimum(positions[joints] + self.settings.lead_rad, self.upper[joints])
+        farthest = np.minimum(positions[joints] + self.settings.lead, self.upper[joints])
         self.targets[joints] = np.minimum(wanted, farthest)
 
-    def _detect_stop(self, finger: _Finger, positions: Float[np.ndarray, "16"], period_s: float) -> None:
+    def _detect_stop(self, finger: _Finger, positions: Float[np.ndarray, "h"], period_s: float) -> None:
         angles = positions[finger.joints]
-        if np.any(np.abs(angles - finger.still_at) > self.settings.stopped_travel_rad):
+        if np.any(np.abs(angles - finger.still_at) > self.settings.stopped_travel):
             finger.still_at, finger.still_s = angles, 0.0
         else:
             finger.still_s += period_s

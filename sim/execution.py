@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from preshape.data.trial import GraspType
 from sim.arm.trajectory import GraspMotion, JointTrajectory
-from sim.closing import ClosingController, ClosingSettings
+from sim.closing import Closing, ClosingController, ClosingSettings
 from sim.outcome import Measurements
 from sim.physics import PhysicsSettings
 from sim.world import World
@@ -33,7 +33,7 @@ class ExecutionSettings:
     settle_time_s: float = 0.15
     hold_time_s: float = 0.6
     lost_lag_m: float | None = 0.05
-    closing: ClosingSettings = field(default_factory=ClosingSettings)
+    closing: Closing = field(default_factory=ClosingSettings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,12 +42,12 @@ class Execution:
 
     Args:
         T_world_palm: the palm pose that the robot reached before it closed the hand.
-        hand: joint angles of the hand at that moment (rad).
+        hand: joint positions of the hand at that moment (rad or m).
         measured: what the label is made of.
     """
 
     T_world_palm: Float[np.ndarray, "4 4"]
-    hand: Float[np.ndarray, "16"]
+    hand: Float[np.ndarray, "h"]
     measured: Measurements
 
 
@@ -97,9 +97,9 @@ class GraspExecutor:
         self._highest_m = -np.inf
 
     def execute(
-        self, motion: GraspMotion, preshape: Float[np.ndarray, "16"], grasp_type: GraspType
+        self, motion: GraspMotion, preshape: Float[np.ndarray, "h"], grasp_type: GraspType
     ) -> Execution:
-        """Execute a grasp with the hand in its preshape (joint angles, rad)."""
+        """Execute a grasp with the hand in its preshape (joint positions, rad or m)."""
         resting_height_m = self._world.object_height_m
         self._show_transit(motion.transit, preshape)
         self._robot.place(motion.approach.positions[0], preshape)
@@ -114,7 +114,7 @@ class GraspExecutor:
         self._wait(self._settings.hold_time_s, "hold", is_lost)
         return Execution(T_world_palm, hand, self._measure(start))
 
-    def _show_transit(self, transit: JointTrajectory, preshape: Float[np.ndarray, "16"]) -> None:
+    def _show_transit(self, transit: JointTrajectory, preshape: Float[np.ndarray, "h"]) -> None:
         """Without a spectator nothing happens: a pose that is not stepped leaves no trace in the physics."""
         if self._spectator is not None:
             positions, _ = transit.sample(np.arange(0.0, transit.duration_s, self._period_s))
@@ -144,7 +144,7 @@ class GraspExecutor:
         lag_m = self._robot.palm_height_m - start.palm_m - (world.object_height_m - start.object_m)
         return lag_m > limit and world.object_velocity[2] <= 0 and not world.object_touches_hand
 
-    def _close(self, preshape: Float[np.ndarray, "16"], grasp_type: GraspType) -> None:
+    def _close(self, preshape: Float[np.ndarray, "h"], grasp_type: GraspType) -> None:
         robot = self._robot
         controller = ClosingController(
             robot.fingers, grasp_type, preshape, robot.robot.hand_upper_limits, self._settings.closing

@@ -7,25 +7,24 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from preshape.data.scene import Scene, SceneRenderer
-from preshape.data.trial import Face
 from preshape.data.trial_table import TableOrigin
-from preshape.grasps.exploration import ExplorationSettings, explored_grasps
-from preshape.grasps.heuristic import HeuristicSettings, InitialGrasp, heuristic_grasps
+from preshape.grasps.heuristic import InitialGrasp
 from preshape.grasps.space import GraspSpace
 from preshape.perception.observation import Observation
 from preshape.perception.segmentation import SegmentationSettings, SegmentedObject, segment
+from sim.grasp_proposals import GraspProposals
 from sim.scene_maker import SceneMaker
 from sim.trial import TrialRunner
 
 
 @dataclass(frozen=True, eq=False)
 class SceneView:
-    """What the robot sees of a scene, and where it would grasp by heuristic.
+    """What the robot sees of a scene, and where planning starts.
 
     Args:
         observation: the RGB-D view.
         segmented: the object in it.
-        initial: heuristic initial grasps.
+        initial: initial grasps.
     """
 
     observation: Observation
@@ -42,19 +41,18 @@ class Laboratory:
         space: what theta means.
         scenes: makes scenes.
         renderer: makes their images.
-        segmentation, heuristic: how the robot finds the object and its initial grasps.
+        proposals: which grasps are tried.
         runner: tries grasps.
-        exploration: how far collected grasps stray from the heuristic ones.
+        segmentation: how the robot finds the object.
     """
 
     origin: TableOrigin
     space: GraspSpace
     scenes: SceneMaker
     renderer: SceneRenderer
-    heuristic: HeuristicSettings
+    proposals: GraspProposals
     runner: TrialRunner
     segmentation: SegmentationSettings = field(default_factory=SegmentationSettings)
-    exploration: ExplorationSettings = field(default_factory=ExplorationSettings)
 
     def view(self, scene: Scene) -> SceneView:
         """Look at a scene; the same scene gives the same view.
@@ -65,20 +63,18 @@ class Laboratory:
         observation = self.renderer(scene)
         segmented = segment(observation, self.segmentation)
         rng = np.random.default_rng([scene.seed, GRASP_STREAM])
-        grasps = heuristic_grasps(segmented, self.space, self.heuristic, scene.camera, rng)
+        grasps = self.proposals.initial(segmented, scene.camera, rng)
         return SceneView(observation, segmented, tuple(grasps))
 
     def explored(self, scene: Scene, view: SceneView) -> list[InitialGrasp]:
-        """Grasps that stray from the heuristic ones; the same scene gives the same grasps."""
+        """Grasps that stray from the initial ones; the same scene gives the same grasps."""
         rng = np.random.default_rng([scene.seed, EXPLORATION_STREAM])
-        return explored_grasps(
-            view.segmented, self.space, self.heuristic, self.exploration, scene.camera, rng
-        )
+        return self.proposals.strayed(view.segmented, scene.camera, rng)
 
     @property
     def grasps_per_scene(self) -> int:
         """Most grasps that collecting tries on a scene."""
-        return len(Face) * (1 + self.exploration.grasps_per_face)
+        return self.proposals.most
 
 
 GRASP_STREAM, EXPLORATION_STREAM = 1, 2

@@ -11,6 +11,7 @@ from preshape.checkpoints import load_weights
 from preshape.data.scene import Scene
 from preshape.data.trial import Face, Trial
 from preshape.errors import InputError
+from preshape.grasps.heuristic import HeuristicSettings
 from preshape.models.success_model import SuccessModel
 from preshape.perception.view_files import save_view
 from preshape.planning.grasp_plan import GraspPlan
@@ -100,6 +101,7 @@ def build_evaluator(
     planners: Mapping[str, Mapping[str, Any]],
     model: SuccessModel,
     weights: str | Path,
+    heuristic: HeuristicSettings,
     recorder: RecorderSettings,
 ) -> Evaluator:
     """The evaluator whose planners all climb one trained network.
@@ -108,6 +110,7 @@ def build_evaluator(
         laboratory: scenes, views and trials.
         planners: for each name the parts of a planner (`conf/planner`).
         model, weights: the network and its trained weights.
+        heuristic: ranges of the preshape joints, which planners keep to.
         recorder: how trials are filmed.
 
     Raises:
@@ -118,7 +121,7 @@ def build_evaluator(
         name: ViewPlanner(
             name=name,
             space=laboratory.space,
-            heuristic=laboratory.heuristic,
+            heuristic=heuristic,
             model=model,
             **{part: parts[part] for part in PLANNER_PARTS if part in parts},
         )

@@ -7,13 +7,13 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.transform import Rotation
 
-from preshape.data.scene import Scene
+from preshape.data.scene import Scene, SceneRenderer
 from preshape.data.trial import Face, Trial, TrialOutcome
-from preshape.geometry.pose import invert_pose, make_pose, transform_points
-from preshape.grasps.space import GraspSpace
+from preshape.geometry.pose import make_pose, transform_points
 from sim.arm.planner import ArmPlanner
 from sim.arm.trajectory import GraspMotion, MotionFailure
 from sim.execution import Execution, ExecutionSettings, GraspExecutor, Spectator
+from sim.grasp_meaning import GraspMeaning, PlacedGrasp
 from sim.objects.object_model import ObjectModel, ObjectSet
 from sim.outcome import OutcomeSettings, judge
 from sim.physics import PhysicsSettings
@@ -102,10 +102,12 @@ class TrialRunner:
     """Tries grasps, each in a fresh world.
 
     Args:
-        robot: who grasps; its grasp space says what theta means.
+        robot: who grasps.
         objects, table: what there is to grasp.
         arm: plans the arm's motions.
         settings: physics, controller and label.
+        meaning: what theta means to the robot.
+        look: the view of a scene, where the meaning depends on it.
     """
 
     robot: RobotDescription
@@ -113,50 +115,56 @@ class TrialRunner:
     table: TableSettings
     arm: ArmPlanner
     settings: TrialSettings
-
-    @property
-    def _space(self) -> GraspSpace:
-        return self.robot.grasp_space
+    meaning: GraspMeaning
+    look: SceneRenderer
 
     def run(self, scene: Scene, grasp: PlannedGrasp, spectator: Spectator | None = None) -> Trial:
         """Try one grasp; the same scene and grasp give the same trial to the bit, timings aside."""
         model = self.objects.load(scene.object_id)
         start = time.perf_counter()
-        motion = self.plan_motion(scene, grasp, model)
+        placed = self.meaning.place(scene, grasp.planned, self.table, self.look)
+        motion = self._plan_motion(scene, grasp, placed, model)
         planned = time.perf_counter()
         if isinstance(motion, MotionFailure):
-            return self._row(scene, grasp, motion.outcome, None, planning_s=planned - start)
+            return self._row(scene, grasp, motion.outcome, planning_s=planned - start)
         world = self._world(model, scene.T_world_object, rendered=spectator is not None)
         built = time.perf_counter()
-        execution = self._execute(world, motion, grasp, spectator)
+        execution = self._execute(world, motion, grasp, placed, spectator)
         done = time.perf_counter()
         outcome = judge(execution.measured, self.settings.outcome)
         times = {"planning_s": planned - start, "scene_s": built - planned, "physics_s": done - built}
-        trial = self._row(scene, grasp, outcome, execution, **times)
-        return replace(trial, soft_label=self._soft_label(scene, grasp, motion, model))
+        trial = replace(
+            self._row(scene, grasp, outcome, **times),
+            reached=placed.theta_of(execution.T_world_palm, execution.hand),
+            lift_height_m=execution.measured.final_height_m,
+        )
+        return replace(trial, soft_label=self._soft_label(scene, grasp, placed, motion, model))
 
-    def plan_motion(
-        self, scene: Scene, grasp: PlannedGrasp, model: ObjectModel
+    def _plan_motion(
+        self, scene: Scene, grasp: PlannedGrasp, placed: PlacedGrasp, model: ObjectModel
     ) -> GraspMotion | MotionFailure:
         """The arm's motion to a planned grasp, or why there is none."""
-        T_world_palm = scene.camera.T_world_camera @ self._space.palm_pose(grasp.planned)
         parts = tuple(transform_points(scene.T_world_object, part) for part in model.collision_parts)
-        preshape = self.robot.preshape(self._space.joints(grasp.planned))
-        return self.arm.plan_grasp(T_world_palm, preshape, parts, np.random.default_rng(grasp.seed))
+        rng = np.random.default_rng(grasp.seed)
+        return self.arm.plan_grasp(placed.T_world_palm, placed.preshape, parts, rng)
 
     def _world(self, model: ObjectModel, pose: Float[np.ndarray, "4 4"], *, rendered: bool = False) -> World:
         world = World(self.table, self.settings.physics, model, pose, rendered=rendered)
         return world.with_robot(self.robot)
 
     def _execute(
-        self, world: World, motion: GraspMotion, grasp: PlannedGrasp, spectator: Spectator | None = None
+        self,
+        world: World,
+        motion: GraspMotion,
+        grasp: PlannedGrasp,
+        placed: PlacedGrasp,
+        spectator: Spectator | None = None,
     ) -> Execution:
         executor = GraspExecutor(world, self.settings.physics, self.settings.execution, spectator)
-        preshape = self.robot.preshape(self._space.joints(grasp.planned))
-        return executor.execute(motion, preshape, grasp.face.grasp_type)
+        return executor.execute(motion, placed.preshape, grasp.face.grasp_type)
 
     def _soft_label(
-        self, scene: Scene, grasp: PlannedGrasp, motion: GraspMotion, model: ObjectModel
+        self, scene: Scene, grasp: PlannedGrasp, placed: PlacedGrasp, motion: GraspMotion, model: ObjectModel
     ) -> float:
         """Share of the repetitions that end LIFTED; NaN if there are none."""
         settings = self.settings.disturbances
@@ -164,7 +172,7 @@ class TrialRunner:
         lifted = []
         for _ in range(settings.repeats):
             pose = _disturbed(scene.T_world_object, settings, rng)
-            execution = self._execute(self._world(model, pose), motion, grasp)
+            execution = self._execute(self._world(model, pose), motion, grasp, placed)
             lifted.append(judge(execution.measured, self.settings.outcome) is TrialOutcome.LIFTED)
         return float(np.mean(lifted)) if lifted else float("nan")
 
@@ -173,22 +181,14 @@ class TrialRunner:
         scene: Scene,
         grasp: PlannedGrasp,
         outcome: TrialOutcome,
-        execution: Execution | None,
         *,
         planning_s: float,
         scene_s: float = 0.0,
         physics_s: float = 0.0,
     ) -> Trial:
         row = grasp.untried(scene, outcome)
-        times = {"scene_s": scene_s, "planning_s": row.planning_s + planning_s, "physics_s": physics_s}
-        if execution is None:
-            return replace(row, **times)
-        height_m = execution.measured.final_height_m
-        return replace(row, reached=self._reached(scene, execution), lift_height_m=height_m, **times)
-
-    def _reached(self, scene: Scene, execution: Execution) -> Float[np.ndarray, "d"]:
-        T_camera_palm = invert_pose(scene.camera.T_world_camera) @ execution.T_world_palm
-        return self._space.theta(T_camera_palm, self.robot.preshape_joints(execution.hand))
+        planning_s += row.planning_s
+        return replace(row, scene_s=scene_s, planning_s=planning_s, physics_s=physics_s)
 
 
 def _disturbed(
