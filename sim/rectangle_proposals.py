@@ -20,9 +20,9 @@ DIRECTIONS = 18
 class RectangleProposals:
     """Rectangles (u, v, angle, opening) around the segmented object.
 
-    The initial ones are the paper's (section 4.5). Of the others, in turn, one is aligned to where the object
-    is narrow, with a little error; one lies anywhere on the object and one anywhere around it, turned and
-    opened at random, so that a network sees failures of all kinds.
+    The initial ones are the paper's (section 4.5). Every second one of the others is aligned to where the
+    object is narrow, with a little error. Between them one lies anywhere on the object and one anywhere around
+    it, in turn, turned and opened at random, so that a network sees failures of all kinds.
 
     Args:
         starts: number of initial rectangles.
@@ -66,7 +66,7 @@ class RectangleProposals:
 
     def _endless(self, pixels: Float[np.ndarray, "n 2"], rng: np.random.Generator) -> Iterator[InitialGrasp]:
         low, high = pixels.min(axis=0) - self.around_px, pixels.max(axis=0) + self.around_px
-        for kind in cycle(("aligned", "on", "around")):
+        for kind in cycle(("aligned", "on", "aligned", "around")):
             centre = rng.uniform(low, high) if kind == "around" else pixels[rng.integers(len(pixels))]
             if kind == "aligned":
                 yield self._aligned(pixels, centre, rng)

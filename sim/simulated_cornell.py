@@ -1,0 +1,198 @@
+"""Executed rectangles as a folder in the layout of the Cornell grasp data set, derived from their tables."""
+
+import logging
+import shutil
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Bool
+
+from preshape.cornell.layout import HEIGHT, OBJECT_LISTS, WIDTH
+from preshape.cornell.rectangle import GraspRectangle
+from preshape.data.scene import Scene, SceneRenderer
+from preshape.data.tables import data_hash, read_data_set
+from preshape.data.trial_table import TrialTable
+from preshape.errors import InputError
+from preshape.files import atomic_path, exclusive, read_json, write_json
+from preshape.geometry.pose import make_pose
+from preshape.grasps.rectangle_space import rectangle_of
+from preshape.grasps.space import GraspSpace
+from sim.cornell_image import image_paths, write_image
+from sim.job_list import do_jobs
+from sim.workers import BeginStep, Work
+
+IMAGES, MADE_FROM, LOCK = "01", "made_from.json", "making.lock"
+BACKGROUND = "pcdb_0000"
+MAX_IMAGES = 10_000
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, eq=False)
+class LabelledScene:
+    """A scene with what came of its rectangles.
+
+    Args:
+        scene: the scene; its number is the image's.
+        positives, negatives: rectangles that were executed, and lifted or not.
+    """
+
+    scene: Scene
+    positives: tuple[GraspRectangle, ...]
+    negatives: tuple[GraspRectangle, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class SimulatedCornell:
+    """Makes the folder: a `preshape.cornell.data_module.FolderMaker`.
+
+    Scenes in which nothing was lifted are left out, because every image there has a positive rectangle.
+
+    Args:
+        table: folder with `scenes.parquet` and `trials.parquet`.
+        space: what theta means in them.
+        renderer: makes the scenes' images.
+        base_height_m: height of the robot's base over the floor; points are written in its frame.
+        margin_px: points are written so far around the object; all of them would be 10 MB an image.
+        workers: number of processes; None takes every core.
+    """
+
+    table: str | Path
+    space: GraspSpace
+    renderer: SceneRenderer
+    base_height_m: float
+    margin_px: int = 160
+    workers: int | None = None
+
+    def __call__(self, root: Path) -> None:
+        """Make the images that are missing in a folder; goes on where an interrupted call stopped.
+
+        A folder that was made from other tables or by other settings is made anew.
+
+        Args:
+            root: the folder.
+
+        Raises:
+            InputError: if the tables cannot be read, the folder holds something else, or it cannot be written.
+        """
+        with exclusive(root / LOCK):
+            self._prepare(root)
+            scenes = {labelled.scene.scene_id: labelled for labelled in labelled_scenes(self.table, self.space)}
+            missing = [n for n in sorted(scenes) if not _complete(root / IMAGES, n)]
+            if missing:
+                self._write(root, {number: scenes[number] for number in missing})
+            _write_objects(root, list(scenes.values()))
+
+    def _prepare(self, root: Path) -> None:
+        made_from = {
+            "tables": data_hash(self.table),
+            "renderer": self.renderer.fingerprint,
+            "base_height_m": self.base_height_m,
+            "margin_px": self.margin_px,
+        }
+        path = root / MADE_FROM
+        if path.is_file() and read_json(path) == made_from:
+            return
+        if not path.is_file() and any(entry.name != LOCK for entry in root.iterdir()):
+            raise InputError(
+                "The folder holds something else", where=root, fix="give another one, or an empty one"
+            )
+        shutil.rmtree(root / IMAGES, ignore_errors=True)
+        write_json(path, made_from)
+
+    def _write(self, root: Path, scenes: dict[int, LabelledScene]) -> None:
+        build = partial(_writing, self, root / IMAGES, scenes)
+        jobs = do_jobs("Writing", build, list(scenes), unit="images", workers=self.workers)
+        failed = [number for number, done in jobs if done is None]
+        if failed:
+            raise InputError(
+                f"{len(failed)} images cannot be made, such as that of scene {failed[0]}",
+                where=root,
+                fix="look at the warnings above and start again",
+            )
+
+    def write(self, folder: Path, labelled: LabelledScene) -> None:
+        """Write one image.
+
+        Raises:
+            InputError: if the place cannot be written to.
+        """
+        view = self.renderer(labelled.scene)
+        shown = _around(view.mask, self.margin_px)
+        T_base_world = make_pose(np.eye(3), np.array([0.0, 0.0, -self.base_height_m]))
+        write_image(
+            folder,
+            labelled.scene.scene_id,
+            view,
+            labelled.positives,
+            labelled.negatives,
+            T_base_world,
+            shown,
+        )
+
+
+def labelled_scenes(table: str | Path, space: GraspSpace) -> list[LabelledScene]:
+    """The scenes of a data set in which at least one rectangle lifted.
+
+    Raises:
+        InputError: if the tables cannot be read, or there are too many scenes for numbers of four digits, or
+            another size of image.
+    """
+    scenes, trials = read_data_set(table, space)
+    if max((scene.scene_id for scene in scenes.scenes), default=0) >= MAX_IMAGES:
+        raise InputError("The scenes have numbers of five digits", where=table, fix="collect fewer")
+    if any((scene.camera.width, scene.camera.height) != (WIDTH, HEIGHT) for scene in scenes.scenes):
+        raise InputError(
+            f"The images are not of {WIDTH} x {HEIGHT} pixels", where=table, fix="collect with camera=overhead"
+        )
+    labelled = [_labelled(scene, trials.executed) for scene in scenes.scenes]
+    usable = [own for own in labelled if own.positives]
+    log.info("%d of %d scenes have a rectangle that lifted", len(usable), len(labelled))
+    return usable
+
+
+def _labelled(scene: Scene, executed: TrialTable) -> LabelledScene:
+    own = executed.where(executed.scene_ids == scene.scene_id)
+    rectangles = [rectangle_of(theta) for theta in own.planned]
+    positives = tuple(r for r, lifted in zip(rectangles, own.lifted, strict=True) if lifted)
+    negatives = tuple(r for r, lifted in zip(rectangles, own.lifted, strict=True) if not lifted)
+    return LabelledScene(scene, positives, negatives)
+
+
+def _around(mask: Bool[np.ndarray, "h w"] | None, margin_px: int) -> Bool[np.ndarray, "h w"]:
+    """Pixels of the rectangle around an object, and so far beside it; all where no object is known."""
+    shown = np.ones((HEIGHT, WIDTH), dtype=bool)
+    if mask is None or not mask.any():
+        return shown
+    for axis in (0, 1):
+        along = np.flatnonzero(mask.any(axis=1 - axis))
+        places = np.arange(mask.shape[axis])
+        near = (places >= along[0] - margin_px) & (places <= along[-1] + margin_px)
+        shown &= near[:, None] if axis == 0 else near[None, :]
+    return shown
+
+
+def _complete(folder: Path, number: int) -> bool:
+    return all(path.is_file() for path in image_paths(folder, number).values())
+
+
+def _write_objects(root: Path, scenes: list[LabelledScene]) -> None:
+    """The list of objects, with a line for each rectangle; an object's number is its place by name."""
+    names = sorted({labelled.scene.object_id for labelled in scenes})
+    lines = []
+    for labelled in scenes:
+        name = labelled.scene.object_id
+        line = f"{labelled.scene.scene_id:04d} {names.index(name)} {name} {BACKGROUND}\n"
+        lines += [line] * (len(labelled.positives) + len(labelled.negatives))
+    with atomic_path(root / OBJECT_LISTS[0]) as temporary:
+        temporary.write_text("".join(lines), encoding="ascii")
+
+
+def _writing(maker: SimulatedCornell, folder: Path, scenes: dict[int, LabelledScene]) -> Work[int, bool]:
+    def work(number: int, _begin: BeginStep) -> bool:
+        maker.write(folder, scenes[number])
+        return True
+
+    return work
