@@ -32,6 +32,8 @@ class RectangleProposals:
         margins_px: range of what an aligned rectangle is wider than the object.
         angle_noise_rad, centre_noise_px: standard deviations of the error of aligned rectangles.
         jaw_px: width of the jaws in the image.
+        level_m: aligned rectangles regard what of the object is no lower than this below the point that they
+            are aligned around: the gripper's fingers do not meet the rest, though the camera sees it.
         around_px: how far beside the object a rectangle may lie.
     """
 
@@ -43,6 +45,7 @@ class RectangleProposals:
     angle_noise_rad: float
     centre_noise_px: float
     jaw_px: float
+    level_m: float
     around_px: float
 
     @property
@@ -62,15 +65,18 @@ class RectangleProposals:
         self, segmented: SegmentedObject, camera: Camera, rng: np.random.Generator
     ) -> list[InitialGrasp]:
         """Aligned ones, ones on the object and ones around it, in turn."""
-        return list(islice(self._endless(_pixels(segmented.mask), rng), self.explored))
+        return list(islice(self._endless(segmented, rng), self.explored))
 
-    def _endless(self, pixels: Float[np.ndarray, "n 2"], rng: np.random.Generator) -> Iterator[InitialGrasp]:
+    def _endless(self, segmented: SegmentedObject, rng: np.random.Generator) -> Iterator[InitialGrasp]:
+        pixels = _pixels(segmented.mask)
+        heights = segmented.points @ segmented.plane[:3]
         low, high = pixels.min(axis=0) - self.around_px, pixels.max(axis=0) + self.around_px
         for kind in cycle(("aligned", "on", "aligned", "around")):
-            centre = rng.uniform(low, high) if kind == "around" else pixels[rng.integers(len(pixels))]
+            k = rng.integers(len(pixels))
             if kind == "aligned":
-                yield self._aligned(pixels, centre, rng)
+                yield self._aligned(pixels[heights > heights[k] - self.level_m], pixels[k], rng)
             else:
+                centre = pixels[k] if kind == "on" else rng.uniform(low, high)
                 yield _grasp(centre, rng.uniform(0.0, np.pi), rng.uniform(*self.openings_px))
 
     def _aligned(

@@ -144,7 +144,7 @@ def surface_at(
     return point, _normal(_points(depth, around, camera))
 
 
-def _disc(shape: tuple[int, ...], u: float, v: float, radius: float) -> Bool[np.ndarray, "h w"]:
+def _disc(shape: tuple[int, ...], u: float, v: float, radius: int) -> Bool[np.ndarray, "h w"]:
     rows, columns = np.ogrid[: shape[0], : shape[1]]
     inside: Bool[np.ndarray, "h w"] = (columns - u) ** 2 + (rows - v) ** 2 <= radius**2
     return inside

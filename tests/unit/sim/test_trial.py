@@ -77,8 +77,7 @@ def test_a_hand_that_closes_beside_the_object_misses_it(laboratory: Laboratory) 
 
 def with_settings(runner: TrialRunner, **changes: object) -> TrialRunner:
     """The same runner but for some of its settings."""
-    settings = replace(runner.settings, **changes)
-    return TrialRunner(runner.robot, runner.objects, runner.table, runner.arm, settings)
+    return replace(runner, settings=replace(runner.settings, **changes))
 
 
 def test_a_lost_trial_ends_early_with_the_outcome_that_it_would_have_had(laboratory: Laboratory) -> None:

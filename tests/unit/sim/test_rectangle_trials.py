@@ -1,0 +1,137 @@
+"""Rectangles executed by the gripper, and the folder in the layout of the Cornell data that is made of them."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hydra import compose, initialize_config_dir
+from hydra.utils import instantiate
+
+import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
+from preshape.cornell.data_set import read_cornell
+from preshape.cornell.rectangle_metric import jaccard
+from preshape.cornell.views import load_cornell_view
+from preshape.data.scene import Scene
+from preshape.data.tables import write_data_set
+from preshape.data.trial import Face, Trial, TrialOutcome
+from preshape.data.trial_table import SceneTable, TrialTable
+from preshape.errors import InputError
+from preshape.geometry.pose import make_pose
+from preshape.grasps.rectangle_space import rectangle_of
+from preshape.paths import project_root
+from sim.laboratory import Laboratory
+from sim.recorder import Recorder, RecorderSettings
+from sim.simulated_cornell import SimulatedCornell
+from sim.trial import PlannedGrasp
+
+BOX = "cheez_it_white_cheddar"
+
+
+@pytest.fixture(scope="module")
+def laboratory(tmp_path_factory: pytest.TempPathFactory) -> Laboratory:
+    cache = tmp_path_factory.mktemp("cache")
+    overrides = ["robot=baxter", "camera=overhead", "collect.explored=4", f"paths.cache={cache}"]
+    with initialize_config_dir(str(project_root() / "conf"), version_base="1.3"):
+        return instantiate(compose("collect", overrides).laboratory)
+
+
+@pytest.fixture(scope="module")
+def scene(laboratory: Laboratory) -> Scene:
+    model = laboratory.scenes.objects.load(BOX)
+    table = laboratory.scenes.table
+    pose = make_pose(np.eye(3), np.array((0.6, 0.0, table.top_m + model.standing_height_m)))
+    return Scene(0, BOX, pose, laboratory.scenes.camera, 5)
+
+
+@pytest.fixture(scope="module")
+def across(laboratory: Laboratory, scene: Scene) -> np.ndarray:
+    """Theta of a rectangle across the box: at the middle of its top, along its thin side."""
+    model = laboratory.scenes.objects.load(BOX)
+    top = scene.T_world_object[:3, 3] + (0.0, 0.0, model.bounds[1, 2])
+    thin = np.eye(3)[np.argmin(model.size[:2])]
+    ends = np.array([top - 0.033 * thin, top + 0.033 * thin])
+    in_camera = (ends - scene.camera.T_world_camera[:3, 3]) @ scene.camera.T_world_camera[:3, :3]
+    (u0, u1), (v0, v1) = scene.camera.project(in_camera)
+    angle = np.arctan2(v1 - v0, u1 - u0) % np.pi
+    return np.array([(u0 + u1) / 2, (v0 + v1) / 2, angle, np.hypot(u1 - u0, v1 - v0)])
+
+
+def grasp(number: int, theta: np.ndarray) -> PlannedGrasp:
+    return PlannedGrasp(number, "exploration", Face.TOP, theta, theta, float("nan"), seed=3)
+
+
+@pytest.fixture(scope="module")
+def trials(laboratory: Laboratory, scene: Scene, across: np.ndarray) -> list[Trial]:
+    """Across the box, along it, and beside it."""
+    along, beside = across + (0, 0, np.pi / 2, 0), across + (0, 0, 0, 0)
+    along[2] %= np.pi
+    beside[:2] += 90.0
+    return [
+        laboratory.runner.run(scene, grasp(k, theta)) for k, theta in enumerate((across, along, beside))
+    ]
+
+
+def test_a_box_is_lifted_across_its_thin_side_only(trials: list[Trial]) -> None:
+    across, along, beside = trials
+    assert across.outcome is TrialOutcome.LIFTED
+    assert across.lift_height_m == pytest.approx(0.2, abs=0.02)
+    assert jaccard(rectangle_of(across.reached), rectangle_of(across.planned)) > 0.95
+    assert {along.outcome, beside.outcome} == {TrialOutcome.MISSED}
+    # the fingers came down on the box, and the gripper did not get where it should
+    assert jaccard(rectangle_of(along.reached), rectangle_of(along.planned)) < 0.95
+
+
+def test_a_trial_repeats_to_the_bit_whoever_looks_on(
+    laboratory: Laboratory, scene: Scene, across: np.ndarray, trials: list[Trial]
+) -> None:
+    film = Recorder(RecorderSettings(every=20))
+    again = laboratory.runner.run(scene, grasp(0, across), film)
+    assert film.phases[-1] == "hold"
+    assert again.reached.tobytes() == trials[0].reached.tobytes()
+    assert again.lift_height_m == trials[0].lift_height_m
+
+
+def test_proposed_rectangles_lie_where_they_should(laboratory: Laboratory, scene: Scene) -> None:
+    view = laboratory.view(scene)
+    centre = np.argwhere(view.segmented.mask)[:, ::-1].mean(axis=0)
+    thetas = np.array([start.theta for start in view.initial])
+    assert thetas.shape == (4, 4)
+    np.testing.assert_allclose(thetas[:, :2], np.tile(centre, (4, 1)))
+    np.testing.assert_array_equal(thetas[:, 3], 30.0)
+    explored = laboratory.explored(scene, view)
+    assert len(view.initial) + len(explored) == laboratory.grasps_per_scene
+    repeated = laboratory.explored(scene, view)
+    assert [e.theta.tobytes() for e in explored] == [e.theta.tobytes() for e in repeated]
+    assert all(0 <= e.theta[2] < np.pi for e in explored)
+    aligned = [laboratory.runner.run(scene, grasp(9, explored[k].theta)) for k in (0, 2)]
+    assert TrialOutcome.LIFTED in {trial.outcome for trial in aligned}
+
+
+def test_executed_rectangles_become_a_data_set_in_cornells_layout(
+    laboratory: Laboratory, scene: Scene, trials: list[Trial], tmp_path: Path
+) -> None:
+    scenes = (scene, replace(scene, scene_id=1))
+    missed = replace(trials[2], trial_id=9, scene_id=1)  # nothing was lifted there
+    table = TrialTable.from_trials([*trials, missed], laboratory.space, laboratory.origin)
+    write_data_set(tmp_path / "table", SceneTable(laboratory.origin, scenes), table)
+    maker = SimulatedCornell(tmp_path / "table", laboratory.space, laboratory.renderer, 0.8, workers=1)
+    root = tmp_path / "cornell"
+    maker(root)
+    (image,) = read_cornell(root).images
+    assert (image.files.number, image.subject.category) == (0, BOX)
+    labelled = [trial.planned for trial in trials]
+    for found, theta in zip((*image.positives, *image.negatives), labelled, strict=True):
+        assert jaccard(found, rectangle_of(theta)) > 0.999
+    seen, view = load_cornell_view(image.files).observation, laboratory.renderer(scene)
+    np.testing.assert_array_equal(seen.rgb, view.rgb)
+    both = np.isfinite(seen.depth) & np.isfinite(view.depth)
+    np.testing.assert_allclose(seen.depth[both], view.depth[both], atol=5e-4)
+    assert both[view.mask].mean() > 0.7  # the sensor loses steep sides
+    np.testing.assert_allclose(seen.camera.T_world_camera[:3, 3], (0.42, 0.0, 0.79), atol=1e-3)
+    written = {path: path.stat().st_mtime_ns for path in root.glob("01/*")}
+    (root / "01" / "pcd0000cneg.txt").unlink()
+    maker(root)
+    assert all(path.is_file() for path in written)
+    with pytest.raises(InputError, match="something else"):
+        maker(tmp_path / "table")
