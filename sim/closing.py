@@ -22,9 +22,7 @@ class Closing(Protocol):
 
     @property
     def lead(self) -> float:
-        """How far a position target may run ahead of its joint; times the drive's stiffness it is the force of
-        the grasp, up to the joint's limit.
-        """
+        """How far a target may run ahead of its joint; times the drive's stiffness it is the force."""
 
     @property
     def stopped_travel(self) -> float:

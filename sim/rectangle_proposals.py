@@ -21,8 +21,8 @@ class RectangleProposals:
     """Rectangles (u, v, angle, opening) around the segmented object.
 
     The initial ones are the paper's (section 4.5). Every second one of the others is aligned to where the
-    object is narrow, with a little error. Between them one lies anywhere on the object and one anywhere around
-    it, in turn, turned and opened at random, so that a network sees failures of all kinds.
+    object is narrow, with a little error. Between them, in turn, one lies on the object and one anywhere
+    around it, turned and opened at random, so that a network sees failures of all kinds.
 
     Args:
         starts: number of initial rectangles.

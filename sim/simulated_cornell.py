@@ -1,6 +1,5 @@
 """Executed rectangles as a folder in the layout of the Cornell grasp data set, derived from their tables."""
 
-import logging
 import shutil
 from dataclasses import dataclass
 from functools import partial
@@ -10,38 +9,19 @@ import numpy as np
 from jaxtyping import Bool
 
 from preshape.cornell.layout import HEIGHT, OBJECT_LISTS, WIDTH
-from preshape.cornell.rectangle import GraspRectangle
-from preshape.data.scene import Scene, SceneRenderer
-from preshape.data.tables import data_hash, read_data_set
-from preshape.data.trial_table import TrialTable
+from preshape.data.scene import SceneRenderer
+from preshape.data.tables import data_hash
 from preshape.errors import InputError
 from preshape.files import atomic_path, exclusive, read_json, write_json
 from preshape.geometry.pose import make_pose
-from preshape.grasps.rectangle_space import rectangle_of
 from preshape.grasps.space import GraspSpace
 from sim.cornell_image import image_paths, write_image
 from sim.job_list import do_jobs
+from sim.labelled_scenes import LabelledScene, labelled_scenes
 from sim.workers import BeginStep, Work
 
 IMAGES, MADE_FROM, LOCK = "01", "made_from.json", "making.lock"
 BACKGROUND = "pcdb_0000"
-MAX_IMAGES = 10_000
-
-log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True, eq=False)
-class LabelledScene:
-    """A scene with what came of its rectangles.
-
-    Args:
-        scene: the scene; its number is the image's.
-        positives, negatives: rectangles that were executed, and lifted or not.
-    """
-
-    scene: Scene
-    positives: tuple[GraspRectangle, ...]
-    negatives: tuple[GraspRectangle, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,15 +55,16 @@ class SimulatedCornell:
             root: the folder.
 
         Raises:
-            InputError: if the tables cannot be read, the folder holds something else, or it cannot be written.
+            InputError: if the tables cannot be read, or the folder holds something else or cannot be written.
         """
         with exclusive(root / LOCK):
             self._prepare(root)
-            scenes = {labelled.scene.scene_id: labelled for labelled in labelled_scenes(self.table, self.space)}
+            labelled = labelled_scenes(self.table, self.space)
+            scenes = {own.scene.scene_id: own for own in labelled}
             missing = [n for n in sorted(scenes) if not _complete(root / IMAGES, n)]
             if missing:
                 self._write(root, {number: scenes[number] for number in missing})
-            _write_objects(root, list(scenes.values()))
+            _write_objects(root, labelled)
 
     def _prepare(self, root: Path) -> None:
         made_from = {
@@ -131,34 +112,6 @@ class SimulatedCornell:
             T_base_world,
             shown,
         )
-
-
-def labelled_scenes(table: str | Path, space: GraspSpace) -> list[LabelledScene]:
-    """The scenes of a data set in which at least one rectangle lifted.
-
-    Raises:
-        InputError: if the tables cannot be read, or there are too many scenes for numbers of four digits, or
-            another size of image.
-    """
-    scenes, trials = read_data_set(table, space)
-    if max((scene.scene_id for scene in scenes.scenes), default=0) >= MAX_IMAGES:
-        raise InputError("The scenes have numbers of five digits", where=table, fix="collect fewer")
-    if any((scene.camera.width, scene.camera.height) != (WIDTH, HEIGHT) for scene in scenes.scenes):
-        raise InputError(
-            f"The images are not of {WIDTH} x {HEIGHT} pixels", where=table, fix="collect with camera=overhead"
-        )
-    labelled = [_labelled(scene, trials.executed) for scene in scenes.scenes]
-    usable = [own for own in labelled if own.positives]
-    log.info("%d of %d scenes have a rectangle that lifted", len(usable), len(labelled))
-    return usable
-
-
-def _labelled(scene: Scene, executed: TrialTable) -> LabelledScene:
-    own = executed.where(executed.scene_ids == scene.scene_id)
-    rectangles = [rectangle_of(theta) for theta in own.planned]
-    positives = tuple(r for r, lifted in zip(rectangles, own.lifted, strict=True) if lifted)
-    negatives = tuple(r for r, lifted in zip(rectangles, own.lifted, strict=True) if not lifted)
-    return LabelledScene(scene, positives, negatives)
 
 
 def _around(mask: Bool[np.ndarray, "h w"] | None, margin_px: int) -> Bool[np.ndarray, "h w"]:

@@ -1,4 +1,4 @@
-"""The electric parallel gripper of Rethink Robotics' Baxter, from the numbers of its published description."""
+"""The electric parallel gripper of Rethink Robotics' Baxter, from its published description."""
 
 from dataclasses import dataclass
 

@@ -64,9 +64,7 @@ class JawPose:
     @property
     def surface_point(self) -> Float[np.ndarray, "3"]:
         """The point of the surface that the gripper aims at (m, camera frame)."""
-        point: Float[np.ndarray, "3"] = (
-            self.T_camera_jaws[:3, 3] - self.advance_m * self.T_camera_jaws[:3, 0]
-        )
+        point: Float[np.ndarray, "3"] = self.T_camera_jaws[:3, 3] - self.advance_m * self.T_camera_jaws[:3, 0]
         return point
 
 

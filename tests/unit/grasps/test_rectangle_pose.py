@@ -1,4 +1,4 @@
-"""From rectangles to gripper poses: the inverse gives the rectangle back, and the fingers stay off the table."""
+"""From rectangles to gripper poses: the inverse gives the rectangle back, fingers stay off the table."""
 
 import numpy as np
 import pytest
@@ -71,7 +71,9 @@ def test_the_pose_gives_its_rectangle_back_and_keeps_off_the_table(
 
 @pytest.mark.parametrize(("tilt_rad", "kept"), [(0.0, True), (0.4, True), (0.7, False), (1.1, False)])
 def test_the_gripper_comes_against_the_normal_within_its_cone(tilt_rad: float, kept: bool) -> None:
-    pose = jaw_pose(GraspRectangle(320.0, 240.0, 0.5, 40.0, 25.0), surface(0.1, tilt_rad, 0.3), TABLE, SETTINGS)
+    pose = jaw_pose(
+        GraspRectangle(320.0, 240.0, 0.5, 40.0, 25.0), surface(0.1, tilt_rad, 0.3), TABLE, SETTINGS
+    )
     tilt = np.arccos(-pose.T_camera_jaws[:3, 0] @ UP)
     assert tilt == pytest.approx(tilt_rad if kept else SETTINGS.max_tilt_rad, abs=1e-3)
 
@@ -98,4 +100,6 @@ def test_holes_in_the_depth_are_bridged() -> None:
         if turned:  # too few neighbours for a normal: straight down
             np.testing.assert_allclose(pose.T_camera_jaws[:3, 0], -UP, atol=1e-9)
     with pytest.raises(InputError, match="no depth"):
-        jaw_pose(rectangle, Observation(whole.rgb, np.full_like(depth, np.nan), None, CAMERA), TABLE, SETTINGS)
+        jaw_pose(
+            rectangle, Observation(whole.rgb, np.full_like(depth, np.nan), None, CAMERA), TABLE, SETTINGS
+        )

@@ -1,4 +1,4 @@
-"""Rectangles executed by the gripper, and the folder in the layout of the Cornell data that is made of them."""
+"""Rectangles executed by the gripper, and the folder in Cornell's layout that is made of them."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -64,12 +64,10 @@ def grasp(number: int, theta: np.ndarray) -> PlannedGrasp:
 @pytest.fixture(scope="module")
 def trials(laboratory: Laboratory, scene: Scene, across: np.ndarray) -> list[Trial]:
     """Across the box, along it, and beside it."""
-    along, beside = across + (0, 0, np.pi / 2, 0), across + (0, 0, 0, 0)
-    along[2] %= np.pi
+    along, beside = across.copy(), across.copy()
+    along[2] = (along[2] + np.pi / 2) % np.pi
     beside[:2] += 90.0
-    return [
-        laboratory.runner.run(scene, grasp(k, theta)) for k, theta in enumerate((across, along, beside))
-    ]
+    return [laboratory.runner.run(scene, grasp(k, theta)) for k, theta in enumerate((across, along, beside))]
 
 
 def test_a_box_is_lifted_across_its_thin_side_only(trials: list[Trial]) -> None:
