@@ -17,8 +17,12 @@ class GraspProposals(Protocol):
     """Makes grasps from what is seen of an object; the same generator state gives the same ones."""
 
     @property
+    def starts(self) -> int:
+        """Most initial grasps of one view."""
+
+    @property
     def most(self) -> int:
-        """Most grasps that both functions make of one view."""
+        """Most grasps of one view, the strayed ones included."""
 
     def initial(
         self, segmented: SegmentedObject, camera: Camera, rng: np.random.Generator
@@ -49,9 +53,14 @@ class HeuristicProposals:
     rotation_rad: float
 
     @property
+    def starts(self) -> int:
+        """See `GraspProposals`."""
+        return len(Face)
+
+    @property
     def most(self) -> int:
         """See `GraspProposals`."""
-        return len(Face) * (1 + self.explored)
+        return self.starts * (1 + self.explored)
 
     def initial(
         self, segmented: SegmentedObject, camera: Camera, rng: np.random.Generator

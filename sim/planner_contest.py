@@ -5,7 +5,7 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from preshape.checkpoints import load_weights
 from preshape.data.scene import Scene
@@ -14,9 +14,14 @@ from preshape.errors import InputError
 from preshape.grasps.heuristic import HeuristicSettings
 from preshape.models.success_model import SuccessModel
 from preshape.perception.view_files import save_view
-from preshape.planning.grasp_plan import GraspPlan
-from preshape.planning.plan_files import write_plan
 from preshape.planning.view_planner import ViewPlanner
+from sim.contestants import (
+    Contestants,
+    ContestPlan,
+    HandContestant,
+    RectangleContestant,
+    RectanglePlanning,
+)
 from sim.execution import Spectator
 from sim.finishing import TrialRunning
 from sim.laboratory import Laboratory, trial_seed
@@ -62,12 +67,12 @@ class Evaluator:
 
     Args:
         laboratory: scenes, views and trials.
-        planners: planners by name.
+        planners: who plans, by name.
         recorder: how trials are filmed.
     """
 
     laboratory: Laboratory
-    planners: Mapping[str, ViewPlanner]
+    planners: Contestants
     recorder: RecorderSettings
 
 
@@ -117,17 +122,49 @@ def build_evaluator(
         InputError: if the weights cannot be used.
     """
     load_weights(weights, model)
-    views = {
-        name: ViewPlanner(
-            name=name,
-            space=laboratory.space,
-            heuristic=heuristic,
-            model=model,
-            **{part: parts[part] for part in PLANNER_PARTS if part in parts},
+    contestants = {
+        name: HandContestant(
+            ViewPlanner(
+                name=name,
+                space=laboratory.space,
+                heuristic=heuristic,
+                model=model,
+                **{part: parts[part] for part in PLANNER_PARTS if part in parts},
+            )
         )
         for name, parts in planners.items()
     }
-    return Evaluator(laboratory, views, recorder)
+    return Evaluator(laboratory, contestants, recorder)
+
+
+class TrainableRectanglePlanning(RectanglePlanning, Protocol):
+    """Plans rectangles with a network that is given later."""
+
+    def with_model(self, model: SuccessModel) -> RectanglePlanning:
+        """The same planner with a trained network."""
+
+
+def build_rectangle_evaluator(
+    laboratory: Laboratory,
+    planners: Mapping[str, TrainableRectanglePlanning],
+    model: SuccessModel,
+    weights: str | Path,
+    recorder: RecorderSettings,
+) -> Evaluator:
+    """The evaluator whose planners of rectangles all climb one trained network.
+
+    Args:
+        laboratory: scenes, views and trials of a gripper.
+        planners: planners by name, which know no network yet.
+        model, weights: the network and its trained weights.
+        recorder: how trials are filmed.
+
+    Raises:
+        InputError: if the weights cannot be used.
+    """
+    load_weights(weights, model)
+    contestants = {name: RectangleContestant(own.with_model(model)) for name, own in planners.items()}
+    return Evaluator(laboratory, contestants, recorder)
 
 
 def try_planners(
@@ -155,8 +192,8 @@ def try_planners(
     runner = RememberingRunner(evaluator.laboratory.runner)
     trials: list[Trial] = []
     for number, (name, planner) in enumerate(evaluator.planners.items()):
-        plan = planner.plan_from(view.observation, view.segmented, view.initial)
-        write_plan(folder / "plans" / f"{scene.scene_id}_{name}.json", plan)
+        plan = planner.plan(view)
+        plan.save(folder / "plans" / f"{scene.scene_id}_{name}.json")
         trials += _execute(evaluator, runner, settings, scene, plan, number, folder)
     return [replace(trial, rendering_s=seconds / len(trials)) for trial in trials]
 
@@ -166,16 +203,17 @@ def _execute(
     runner: TrialRunning,
     settings: EvaluationSettings,
     scene: Scene,
-    plan: GraspPlan,
+    plan: ContestPlan,
     number: int,
     folder: Path,
 ) -> list[Trial]:
     """Execute a plan's grasps in the order of its ranking: all of them, or until one could be executed."""
     film = scene.scene_id < settings.filmed_scenes and plan.planner in settings.filmed_planners
+    first = (scene.scene_id * len(evaluator.planners) + number) * evaluator.laboratory.proposals.starts
     trials: list[Trial] = []
     for start in plan.result.ranking.tolist():
         grasp = PlannedGrasp(
-            trial_id=(scene.scene_id * len(evaluator.planners) + number) * len(Face) + start,
+            trial_id=first + start,
             planner=plan.planner,
             face=plan.faces[start],
             initial=plan.result.initial_theta[start],
