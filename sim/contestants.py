@@ -1,45 +1,30 @@
 """Who plans on a scene when planners compete: planners for a hand, and for rectangles."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
-from pathlib import Path
 from typing import Protocol
 
 import numpy as np
 from jaxtyping import Float64
 
-from preshape.data.trial import Face
-from preshape.files import write_json
+from preshape.geometry.pose import pose_over_plane
+from preshape.grasps.space import GraspSpace
 from preshape.perception.observation import Observation
-from preshape.planning.plan_files import write_plan
+from preshape.planning.grasp_plan import GraspPlan
 from preshape.planning.result import PlanResult
 from preshape.planning.view_planner import ViewPlanner
 from sim.laboratory import SceneView
 
 
-@dataclass(frozen=True, eq=False)
-class ContestPlan:
-    """What a planner found on a scene.
-
-    Args:
-        planner: its name.
-        faces: face that each start aimed at; decides how the hand closes.
-        result: the grasps.
-        save: writes it as JSON.
-    """
-
-    planner: str
-    faces: tuple[Face, ...]
-    result: PlanResult
-    save: Callable[[Path], None]
-
-
 class Contestant(Protocol):
     """Plans on a scene."""
 
-    def plan(self, view: SceneView) -> ContestPlan:
+    def plan(self, view: SceneView) -> GraspPlan:
         """Plan from the view's initial grasps."""
+
+
+Contestants = Mapping[str, Contestant]
+"""By the names of their planners."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,10 +37,9 @@ class HandContestant:
 
     planner: ViewPlanner
 
-    def plan(self, view: SceneView) -> ContestPlan:
+    def plan(self, view: SceneView) -> GraspPlan:
         """See `Contestant`."""
-        plan = self.planner.plan_from(view.observation, view.segmented, view.initial)
-        return ContestPlan(plan.planner, plan.faces, plan.result, partial(write_plan, plan=plan))
+        return self.planner.plan_from(view.observation, view.segmented, view.initial)
 
 
 class PlannedRectangles(Protocol):
@@ -83,19 +67,16 @@ class RectangleContestant:
 
     Args:
         planner: from views to rectangles.
+        space: what theta means.
     """
 
     planner: RectanglePlanning
+    space: GraspSpace
 
-    def plan(self, view: SceneView) -> ContestPlan:
+    def plan(self, view: SceneView) -> GraspPlan:
         """See `Contestant`."""
         initial = np.stack([grasp.theta for grasp in view.initial])
         plan = self.planner.plan_from(view.observation, initial)
         faces = tuple(grasp.face for grasp in view.initial)
-        content = {"planner": plan.planner, **vars(plan.result)}
-        save = partial(write_json, content=content)
-        return ContestPlan(plan.planner, faces, plan.result, save)
-
-
-Contestants = Mapping[str, Contestant]
-"""By the names of their planners."""
+        poses = view.observation.camera.T_world_camera, pose_over_plane(view.segmented.plane)
+        return GraspPlan(plan.planner, self.space, faces, plan.result, *poses)

@@ -1,4 +1,4 @@
-"""Compare planners of rectangles on new scenes: `python sim/evaluate_rectangles.py weights=FILE.safetensors`."""
+"""Compare planners of rectangles on new scenes: `python sim/evaluate_rectangles.py weights=FILE`."""
 
 import logging
 from pathlib import Path

@@ -14,14 +14,10 @@ from preshape.errors import InputError
 from preshape.grasps.heuristic import HeuristicSettings
 from preshape.models.success_model import SuccessModel
 from preshape.perception.view_files import save_view
+from preshape.planning.grasp_plan import GraspPlan
+from preshape.planning.plan_files import write_plan
 from preshape.planning.view_planner import ViewPlanner
-from sim.contestants import (
-    Contestants,
-    ContestPlan,
-    HandContestant,
-    RectangleContestant,
-    RectanglePlanning,
-)
+from sim.contestants import Contestants, HandContestant, RectangleContestant, RectanglePlanning
 from sim.execution import Spectator
 from sim.finishing import TrialRunning
 from sim.laboratory import Laboratory, trial_seed
@@ -163,7 +159,9 @@ def build_rectangle_evaluator(
         InputError: if the weights cannot be used.
     """
     load_weights(weights, model)
-    contestants = {name: RectangleContestant(own.with_model(model)) for name, own in planners.items()}
+    contestants = {
+        name: RectangleContestant(own.with_model(model), laboratory.space) for name, own in planners.items()
+    }
     return Evaluator(laboratory, contestants, recorder)
 
 
@@ -193,7 +191,7 @@ def try_planners(
     trials: list[Trial] = []
     for number, (name, planner) in enumerate(evaluator.planners.items()):
         plan = planner.plan(view)
-        plan.save(folder / "plans" / f"{scene.scene_id}_{name}.json")
+        write_plan(folder / "plans" / f"{scene.scene_id}_{name}.json", plan)
         trials += _execute(evaluator, runner, settings, scene, plan, number, folder)
     return [replace(trial, rendering_s=seconds / len(trials)) for trial in trials]
 
@@ -203,7 +201,7 @@ def _execute(
     runner: TrialRunning,
     settings: EvaluationSettings,
     scene: Scene,
-    plan: ContestPlan,
+    plan: GraspPlan,
     number: int,
     folder: Path,
 ) -> list[Trial]:

@@ -81,12 +81,19 @@ def _grasp(plan: GraspPlan, start: int) -> dict[str, Any]:
         "grasp_type": plan.faces[start].grasp_type.value,
         "status": result.status[start].value,
         **{name: getattr(result, name)[start] for name in SCALARS},
-        "T_camera_palm": plan.palm_pose(start),
-        "T_table_palm": plan.palm_pose_over_table(start),
-        "T_world_palm": plan.palm_pose_in_world(start),
+        **(_palm_poses(plan, start) if space.frame == "camera" else {}),
         "joints": dict(zip(space.joint_names, space.joints(theta).tolist(), strict=True)),
         **{name: getattr(result, name)[start] for name in THETAS},
         "climb": result.climb[start],
+    }
+
+
+def _palm_poses(plan: GraspPlan, start: int) -> dict[str, Any]:
+    """Where the palm is to be; a rectangle in an image does not say that by itself."""
+    return {
+        "T_camera_palm": plan.palm_pose(start),
+        "T_table_palm": plan.palm_pose_over_table(start),
+        "T_world_palm": plan.palm_pose_in_world(start),
     }
 
 
