@@ -65,7 +65,7 @@ class SimulatedRobot:
             joints[k].set_drive_velocity_target(float(velocity))
 
     def drive_hand(self, positions: Float[np.ndarray, "16"]) -> None:
-        """Targets of the hand's drives: joint angles (rad)."""
+        """Targets of the hand's drives: positions of its joints (rad or m), as many as the robot has."""
         joints = self.articulation.active_joints
         for k, position in zip(self._hand, positions, strict=True):
             joints[k].set_drive_target(float(position))
@@ -78,7 +78,7 @@ class SimulatedRobot:
 
     @property
     def hand_positions(self) -> Float[np.ndarray, "16"]:
-        """Measured joint angles of the hand (rad)."""
+        """Measured positions of the hand's joints (rad or m)."""
         return self.articulation.qpos[self._hand].astype(np.float64)
 
     @property

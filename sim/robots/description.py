@@ -14,12 +14,14 @@ from preshape.grasps.space import GraspSpace
 class RobotSettings:
     """Choices about an arm with a hand (`conf/robot/`).
 
+    Where a hand's joints slide, read m for rad and N for Nm.
+
     Args:
         name: name of the robot, as trial tables record it.
         base_height_m: height of the arm's base plate over the floor; a pedestal fills the gap.
         mount_length_m: length of the piece between the arm's flange and the hand.
         mount_yaw_rad: turn of the hand about the flange's axis.
-        palm_offset_m: origin of the palm frame in the frame of the palm link; their axes are parallel.
+        palm_offset_m: origin of the palm frame in the frame of the palm link.
         preshape_mapping: joint of the grasp space -> joint of the URDF that it sets.
         arm_home_rad: arm joints at rest, out of the camera's view and away from the table.
         hand_open_rad: the hand's joints that are not at zero when it is open, by URDF name.
@@ -51,6 +53,8 @@ class RobotSettings:
 class RobotDescription:
     """A robot put together: one URDF and the meaning of its joints and links.
 
+    Where a hand's joints slide, read m for rad and N for Nm.
+
     Args:
         name: name of the robot, as trial tables record it.
         urdf_path: arm, mount and hand in one file; meshes by absolute path.
@@ -66,8 +70,8 @@ class RobotDescription:
         disabled_pairs: pairs of links that are not checked for collisions.
         preshape_mapping: joint of the grasp space -> joint of the URDF that it sets.
         T_world_base: pose of the URDF's root link.
-        T_link_palm: palm frame (x: normal into the object, y: thumb side, z: along the middle finger) in the
-            palm link.
+        T_link_palm: palm frame (x: the approach, into the object; y: the thumb's side and z: along the middle
+            finger, or y: along a gripper's opening) in the palm link.
         arm_home, hand_open: joint angles (rad) at rest.
         arm_lower_limits, arm_upper_limits, hand_lower_limits, hand_upper_limits: joint limits (rad).
         arm_velocities, arm_accelerations: the arm's largest speeds (rad/s) and accelerations (rad/s^2).

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from preshape.data.trial import GraspType
-from sim.closing import ClosingController, ClosingSettings
+from sim.closing import ClosingController, ClosingSettings, GripperClosing
 
 FINGERS = {"index": (0, 1, 2, 3), "middle": (4, 5, 6, 7), "ring": (8, 9, 10, 11), "thumb": (12, 13, 14, 15)}
 PERIOD_S = 1 / 60
@@ -62,3 +62,17 @@ def test_a_finger_that_never_stops_does_not_hold_the_trial_up() -> None:
         positions = positions + 1.2 * PERIOD_S
         hand.update(positions, PERIOD_S)
     assert hand.elapsed_s == pytest.approx(SETTINGS.max_time_s, abs=2 * PERIOD_S)
+
+
+def test_a_gripper_closes_both_fingers_until_they_stop() -> None:
+    settings = GripperClosing()
+    hand = ClosingController(
+        {"left": (0,), "right": (1,)}, GraspType.OVERHEAD, np.zeros(2), np.full(2, 0.02), settings
+    )
+    positions = np.zeros(2)
+    while not hand.done:
+        targets = hand.update(positions, PERIOD_S)
+        assert np.all(targets - positions <= settings.lead_m + 1e-12)
+        positions = np.minimum(targets, (0.012, 0.02))  # the left finger meets something
+    assert np.all(positions == (0.012, 0.02))
+    assert hand.elapsed_s < settings.max_time_s

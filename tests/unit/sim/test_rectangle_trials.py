@@ -1,6 +1,6 @@
 """Rectangles executed by the gripper, and the folder in Cornell's layout that is made of them."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +20,15 @@ from preshape.errors import InputError
 from preshape.geometry.pose import make_pose
 from preshape.grasps.rectangle_space import rectangle_of
 from preshape.paths import project_root
+from preshape.perception.observation import Observation
+from preshape.planning.bounds import Bounds
+from preshape.planning.heuristic import HeuristicPlanner
+from preshape.planning.objective import UnknownSuccess
+from preshape.planning.plan_files import read_plan
+from preshape.planning.result import PlanResult
+from sim.contestants import RectangleContestant
 from sim.laboratory import Laboratory
+from sim.planner_contest import EvaluationSettings, Evaluator, try_planners
 from sim.recorder import Recorder, RecorderSettings
 from sim.simulated_cornell import SimulatedCornell
 from sim.trial import PlannedGrasp
@@ -104,6 +112,28 @@ def test_proposed_rectangles_lie_where_they_should(laboratory: Laboratory, scene
     assert all(0 <= e.theta[2] < np.pi for e in explored)
     aligned = [laboratory.runner.run(scene, grasp(9, explored[k].theta)) for k in (0, 2)]
     assert TrialOutcome.LIFTED in {trial.outcome for trial in aligned}
+
+
+@dataclass(frozen=True)
+class AsTheyAre:
+    """Plans what it is given."""
+
+    result: PlanResult | None = None
+    planner: str = "initial"
+
+    def plan_from(self, observation: Observation, initial: np.ndarray) -> "AsTheyAre":
+        bounds = Bounds(initial - 1.0, initial + 1.0)
+        return AsTheyAre(HeuristicPlanner().plan(UnknownSuccess(), initial, bounds))
+
+
+def test_planners_of_rectangles_compete(laboratory: Laboratory, scene: Scene, tmp_path: Path) -> None:
+    contestants = {name: RectangleContestant(AsTheyAre(), laboratory.space) for name in ("initial", "other")}
+    settings = EvaluationSettings(scenes=1, seed=1, every_grasp_of=("initial",))
+    evaluator = Evaluator(laboratory, contestants, RecorderSettings())
+    tried = try_planners(evaluator, settings, scene, tmp_path)
+    assert len({trial.trial_id for trial in tried}) == 2 * len(laboratory.view(scene).initial)
+    plan = read_plan(tmp_path / "plans" / "0_other.json", laboratory.space)
+    np.testing.assert_array_equal(plan.result.theta, [trial.planned for trial in tried[:4]])
 
 
 def test_executed_rectangles_become_a_data_set_in_cornells_layout(
