@@ -18,10 +18,12 @@ from preshape.grasps.space import GraspSpace
 from sim.cornell_image import image_paths, write_image
 from sim.job_list import do_jobs
 from sim.labelled_scenes import LabelledScene, labelled_scenes
-from sim.workers import BeginStep, Work
+from sim.workers import BeginStep, Work, available_cores
 
 IMAGES, MADE_FROM, LOCK = "01", "made_from.json", "making.lock"
 BACKGROUND = "pcdb_0000"
+IMAGES_PER_WORKER = 30
+"""Fewer are not worth another process, which needs some seconds to start."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,8 +86,13 @@ class SimulatedCornell:
         write_json(path, made_from)
 
     def _write(self, root: Path, scenes: dict[int, LabelledScene]) -> None:
+        count = min(self.workers or available_cores(), -(-len(scenes) // IMAGES_PER_WORKER))
+        if count <= 1:
+            for labelled in scenes.values():
+                self.write(root / IMAGES, labelled)
+            return
         build = partial(_writing, self, root / IMAGES, scenes)
-        jobs = do_jobs("Writing", build, list(scenes), unit="images", workers=self.workers)
+        jobs = do_jobs("Writing", build, list(scenes), unit="images", workers=count)
         failed = [number for number, done in jobs if done is None]
         if failed:
             raise InputError(
