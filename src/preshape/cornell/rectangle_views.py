@@ -86,7 +86,9 @@ def height_over_table(observation: Observation) -> Float32[np.ndarray, "h w"]:
         height = find_table(points, up, TableSettings()).height(points)
     except InputError:
         return np.zeros(observation.depth.shape, dtype=np.float32)
-    return np.nan_to_num(height).clip(-HEIGHT_LIMIT_M, HEIGHT_LIMIT_M).astype(np.float32)
+    near = np.nan_to_num(height).clip(-HEIGHT_LIMIT_M, HEIGHT_LIMIT_M)
+    limited: Float32[np.ndarray, "h w"] = near.astype(np.float32)
+    return limited
 
 
 def _averaged(
@@ -97,7 +99,8 @@ def _averaged(
     squares = (channels, height // step, step, width // step, step)
     total = np.where(known, image, 0).reshape(squares).sum(axis=(2, 4))
     count = known.reshape(squares).sum(axis=(2, 4))
-    return (total / np.maximum(count, 1)).astype(np.float32)
+    mean: Float32[np.ndarray, "8 hs ws"] = (total / np.maximum(count, 1)).astype(np.float32)
+    return mean
 
 
 def stacked(images: Sequence[Float[np.ndarray, "8 h w"]]) -> Float[Tensor, "b 8 h w"]:

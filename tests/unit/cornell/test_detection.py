@@ -101,7 +101,7 @@ def test_more_starts_are_never_worse_and_the_first_ones_stay() -> None:
 
 def test_folds_that_were_not_trained_are_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="10 folds were not trained"):
-        evaluate_folds(tmp_path, ["scenes", "unseen"], lambda split, fold: None, make_detector())
+        evaluate_folds(tmp_path, ["scenes", "unseen"], lambda *_: None, make_detector())
 
 
 def detection(image: int, method: str, starts: int, correct: bool) -> Detection:
