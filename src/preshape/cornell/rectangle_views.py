@@ -86,8 +86,9 @@ def height_over_table(observation: Observation) -> Float32[np.ndarray, "h w"]:
         height = find_table(points, up, TableSettings()).height(points)
     except InputError:
         return np.zeros(observation.depth.shape, dtype=np.float32)
-    near = np.nan_to_num(height).clip(-HEIGHT_LIMIT_M, HEIGHT_LIMIT_M)
-    limited: Float32[np.ndarray, "h w"] = near.astype(np.float32)
+    limited: Float32[np.ndarray, "h w"] = (
+        np.nan_to_num(height).clip(-HEIGHT_LIMIT_M, HEIGHT_LIMIT_M).astype(np.float32)
+    )
     return limited
 
 
