@@ -114,7 +114,7 @@ def test_every_option_composes_and_builds(
     command: str, group: str, option: str, mesh_folder: Path, tmp_path: Path
 ) -> None:
     overrides = [f"{group}={option}", f"paths.cache={tmp_path}"]
-    given = {"objects.root": mesh_folder, "report.root": tmp_path}
+    given = {"objects.root": mesh_folder, "report.root": tmp_path, "dataset.root": tmp_path}
     missing = missing_keys(OmegaConf.to_container(compose_command(command, *overrides)))
     cfg = compose_command(command, *overrides, *(f"{key}={given[key]}" for key in missing if key in given))
     name = group.split("@")[-1]
