@@ -7,7 +7,7 @@ from jaxtyping import Float
 from torch import Tensor, nn
 from torch.nn.functional import conv2d
 
-from preshape.hands.kinematics import HandKinematics
+from preshape.hands.projectable import ProjectableHand
 from preshape.models.success_model import IMAGE_CHANNELS, SuccessModel, xavier_weights
 from preshape.perception.grasp_patches import cut_patches
 from preshape.perception.hand_projection import HandProjection
@@ -53,7 +53,7 @@ class ConfigCNN(SuccessModel):
         theta_dim: int,
         *,
         keep_prob: float = 0.75,
-        hand: HandKinematics | None = None,
+        hand: ProjectableHand | None = None,
     ) -> None:
         super().__init__(name, grasp_space, theta_dim)
         self.projection = None if hand is None else HandProjection(hand)
