@@ -61,15 +61,13 @@ def evaluate_folds(group: Path, splits: Sequence[str], parts: Parts, detector: D
     _check_trained(folders.values())
     centres: dict[int, tuple[float, float]] = {}
     outcomes = []
-    with Progress("Detecting", len(folds), "folds") as progress:
-        for (split, fold), folder in folders.items():
-            data, model = parts(split, fold)
-            detections = _detect(folder, data, model, detector, centres)
-            content = {"detections": [own.to_dict() for own in detections]}
-            write_json(folder / DETECTIONS_FILE, content)
-            predictions = pd.read_parquet(folder / "predictions.parquet")
-            outcomes.append(FoldOutcome(split, predictions, detections))
-            progress.advance()
+    for (split, fold), folder in folders.items():
+        data, model = parts(split, fold)
+        detections = _detect(folder, data, model, detector, centres)
+        content = {"detections": [own.to_dict() for own in detections]}
+        write_json(folder / DETECTIONS_FILE, content)
+        predictions = pd.read_parquet(folder / "predictions.parquet")
+        outcomes.append(FoldOutcome(split, predictions, detections))
     return outcomes
 
 
@@ -99,11 +97,13 @@ def _detect(
     data.render(with_patches=True)
     load_weights(folder / WEIGHTS_FILE, model)
     detections = []
-    for image in data.test_images:
-        number = image.files.number
-        if number not in centres:
-            centres[number] = detector.centre(image)
-        detections += detector.detect(data.test.images[number], centres[number], model)
+    with Progress(f"Detecting, {folder.name}", len(data.test_images), "images") as progress:
+        for image in data.test_images:
+            number = image.files.number
+            if number not in centres:
+                centres[number] = detector.centre(image)
+            detections += detector.detect(data.test.images[number], centres[number], model)
+            progress.advance()
     return detections
 
 
