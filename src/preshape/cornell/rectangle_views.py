@@ -1,6 +1,5 @@
 """Images as views for rectangles: whole, in theta's pixels, and if wanted with fewer of them."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -102,8 +101,3 @@ def _averaged(
     count = known.reshape(squares).sum(axis=(2, 4))
     mean: Float32[np.ndarray, "8 hs ws"] = (total / np.maximum(count, 1)).astype(np.float32)
     return mean
-
-
-def stacked(images: Sequence[Float[np.ndarray, "8 h w"]]) -> Float[Tensor, "b 8 h w"]:
-    """Images of one size as a batch."""
-    return torch.from_numpy(np.stack(images))

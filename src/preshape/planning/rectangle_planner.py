@@ -2,14 +2,12 @@
 
 import math
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 import torch
 from jaxtyping import Float64
 
-from preshape.checkpoints import load_weights
-from preshape.cornell.object_finder import FinderSettings, centre_of, find_object
+from preshape.cornell.object_finder import FinderSettings
 from preshape.cornell.rectangle import GraspRectangle
 from preshape.cornell.rectangle_views import RectangleViewSettings, rectangle_image, rectangle_view
 from preshape.grasps.rectangle_space import JAW_PX, rectangle_of
@@ -76,7 +74,7 @@ class RectanglePlan:
 
 @dataclass(frozen=True, eq=False)
 class RectanglePlanner:
-    """Plans rectangles for the object in a view: finds it, and climbs from rectangles at its centre.
+    """Plans rectangles for the object in a view, from initial ones at its centre.
 
     Args:
         name: name of the planner.
@@ -100,27 +98,9 @@ class RectanglePlanner:
     model: SuccessModel | None = None
     jaw_px: float = JAW_PX
 
-    def with_network(self, model: SuccessModel, weights: str | Path) -> "RectanglePlanner":
-        """The same planner with a network, into which trained weights are read.
-
-        Raises:
-            InputError: if the weights cannot be used.
-        """
-        load_weights(weights, model)
-        return self.with_model(model)
-
     def with_model(self, model: SuccessModel, method: Planner | None = None) -> "RectanglePlanner":
         """The same planner with a trained network, and perhaps another method."""
         return replace(self, model=model, method=method or self.method)
-
-    def plan(self, observation: Observation, rng: np.random.Generator) -> RectanglePlan:
-        """Plan for the object on the table.
-
-        Raises:
-            InputError: if no object can be made out.
-        """
-        centre = centre_of(find_object(observation, self.finder))
-        return self.plan_from(observation, self.starts.around(centre, rng))
 
     def plan_from(self, observation: Observation, initial: Float64[np.ndarray, "s 4"]) -> RectanglePlan:
         """Plan from initial rectangles, so that planners can be compared."""
