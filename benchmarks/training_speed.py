@@ -13,6 +13,7 @@ from torch import Tensor
 from torch.nn.functional import binary_cross_entropy_with_logits
 
 import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
+from preshape.allocator import keep_freed_memory
 from preshape.models.config_cnn import ConfigCNN
 from preshape.models.lightning_module import learning_of
 from preshape.paths import project_root
@@ -73,6 +74,7 @@ def config_cnn_step(seed: int, flop_per_s: float) -> Comparison:
 
 def _step_and_reading(model: str, seed: int, flop_per_s: float) -> Comparison:
     """A training step on shipped trials; beside it the reading of its batch, which a training adds to it."""
+    keep_freed_memory()  # as a training does
     with tempfile.TemporaryDirectory() as cache:
         overrides = [f"model={model}", f"paths.cache={cache}", f"dataset.data.trials={TRIALS}"]
         with initialize_config_dir(str(project_root() / "conf"), version_base="1.3"):

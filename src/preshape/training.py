@@ -13,6 +13,7 @@ from typing import Any, Literal
 import lightning
 from safetensors.torch import save
 
+from preshape.allocator import keep_freed_memory
 from preshape.checkpoints import load_weights, save_weights, sidecar_path
 from preshape.data.labelled_data import LabelledData
 from preshape.evaluation.grasp_errors import GraspErrors
@@ -95,6 +96,7 @@ def train(
     Raises:
         InputError: if the data, or weights to start from, cannot be used, or files cannot be written.
     """
+    keep_freed_memory()
     data.setup()
     if isinstance(model, RegressionCNN):
         data.keep_lifted()
