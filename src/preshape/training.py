@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import lightning
+from lightning.pytorch.utilities.exceptions import SIGTERMException
 from safetensors.torch import save
 
 from preshape.allocator import keep_freed_memory
@@ -32,6 +33,8 @@ log = logging.getLogger(__name__)
 WEIGHTS_FILE = "model.safetensors"
 METRICS_FILE = "metrics.json"
 CURVES_FILE = "curves.json"
+EXIT_TERMINATED = 143
+"""What a shell calls the end by SIGTERM."""
 REPORT_FILES = (PREDICTIONS_FILE, *PICTURES, CURVES_FILE, METRICS_FILE)
 
 
@@ -165,6 +168,9 @@ def _fit(
             ckpt_path=unfinished if going_on else None,
             weights_only=True,
         )
+    except SIGTERMException:  # which would end the process as if it had done its work
+        log.warning("Told to end by SIGTERM. Started again, this training goes on at its last validation.")
+        sys.exit(EXIT_TERMINATED)
     except SystemExit as end:  # Lightning's answer to an interrupt
         if isinstance(end.__context__, KeyboardInterrupt):
             raise KeyboardInterrupt from end

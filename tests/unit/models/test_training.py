@@ -1,6 +1,7 @@
 """Training: the seed decides the weights, an interruption changes nothing, every file comes out."""
 
 import json
+import os
 import signal
 from collections.abc import Mapping
 from dataclasses import replace
@@ -131,6 +132,22 @@ def test_an_interrupt_stays_an_interrupt(data: GraspDataModule, tmp_path: Path) 
     finally:
         signal.signal(signal.SIGINT, handler)
     assert not list(tmp_path.glob("model*"))
+
+
+def test_being_told_to_end_is_no_success(data: GraspDataModule, tmp_path: Path) -> None:
+    class Terminating(UntrackedRun):
+        def log(self, values: Mapping[str, float], step: int) -> None:
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    handler = signal.getsignal(signal.SIGTERM)
+    try:
+        with pytest.raises(SystemExit) as end:
+            train(make_network(), data, SETTINGS, tmp_path, Terminating())
+    finally:
+        signal.signal(signal.SIGTERM, handler)
+    assert end.value.code == 143
+    assert not list(tmp_path.glob("model*"))
+    assert list(tmp_path.glob("unfinished-*.ckpt"))
 
 
 def test_every_file_comes_out_and_agrees(data: GraspDataModule, tmp_path: Path) -> None:
