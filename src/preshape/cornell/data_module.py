@@ -90,7 +90,7 @@ class CornellDataModule(LabelledData):
             self._maker(self._root)
         self._data = read_cornell(self._root)
         trials = rectangle_table(self._data, self._space)
-        self._split = split_images(self._data.objects, self._hold_out)
+        self._split = split_images(self._data.objects, self._data.names, self._hold_out)
 
         def part(numbers: frozenset[int]) -> RectangleDataset:
             rows = trials.where(np.isin(trials.scene_ids, sorted(numbers)))

@@ -50,6 +50,11 @@ class CornellDataSet:
         return {image.files.number: image.subject.object_id for image in self.images}
 
     @property
+    def names(self) -> dict[int, str]:
+        """Name of each image's object, by the image's number: its category, which is one object's in ours."""
+        return {image.files.number: image.subject.category for image in self.images}
+
+    @property
     def digest(self) -> str:
         """Digest of the labels and of the images' sizes, by which a trained network names its data."""
         told = [

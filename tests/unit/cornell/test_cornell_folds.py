@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from preshape.cornell.folds import image_folds, object_folds
+from preshape.cornell.folds import image_folds, object_folds, split_images
+from preshape.data.folds import HoldOut
 from preshape.errors import InputError
 
 objects = st.dictionaries(st.integers(0, 1034), st.integers(0, 30), min_size=5, max_size=80)
@@ -47,3 +48,17 @@ def test_too_few_to_deal_are_refused() -> None:
         image_folds(dict.fromkeys(range(4), 1), 0)
     with pytest.raises(InputError, match="1 objects"):
         object_folds(dict.fromkeys(range(40), 1), 0)
+
+
+def test_named_objects_are_held_out_whole(caplog: pytest.LogCaptureFixture) -> None:
+    images = {number: number // 3 for number in range(30)}
+    names = {number: f"object_{own}" for number, own in images.items()}
+    named = HoldOut("objects", 0, 0.2, 0, objects=("object_2", "object_7", "lifted_by_nobody"))
+    split = split_images(images, names, named)
+    assert split.test == {6, 7, 8, 21, 22, 23}
+    assert split.train | split.validation | split.test == set(images)
+    assert not split.train & split.validation
+    assert not {images[n] for n in split.train} & {images[n] for n in split.validation}
+    assert "lifted_by_nobody" in caplog.text
+    with pytest.raises(InputError, match="teapot"):
+        split_images(images, names, HoldOut("objects", 0, 0.0, 0, objects=("teapot",)))
