@@ -8,17 +8,19 @@ from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig, OmegaConf
 
 from preshape.errors import InputError
+from preshape.setting_values import check_values
 
 
 def check_composition(cfg: DictConfig) -> None:
-    """Refuse a configuration whose parts do not fit together.
+    """Refuse a configuration with values that cannot be, or whose parts do not fit together.
 
     Only the parts that a configuration has are checked, so every command uses this one function.
 
     Raises:
-        InputError: naming the two choices that clash, or the setting that is missing.
+        InputError: naming the two choices that clash, or the setting that is missing or wrong.
     """
     _check_nothing_is_missing(cfg)
+    check_values(cfg)
     _check_model_fits_robot(cfg)
     _check_dataset_fits_robot(cfg)
     _check_planners_have_a_network(cfg)
