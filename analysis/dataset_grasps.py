@@ -63,7 +63,7 @@ def read_families(path: str | Path | None) -> dict[str, str]:
     try:
         with Path(path).open(newline="", encoding="utf-8") as file:
             return {row["name"]: row["family"].replace("_", " ") for row in csv.DictReader(file)}
-    except (OSError, KeyError, ValueError) as error:
+    except (OSError, KeyError, ValueError, AttributeError, csv.Error) as error:  # a short row has None
         raise InputError(
             f"The table of shape families cannot be read ({error!r})",
             where=path,

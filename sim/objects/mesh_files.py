@@ -46,13 +46,14 @@ def read_mesh_file(path: Path) -> list[trimesh.Trimesh]:
         scene = trimesh.load_scene(path, process=False, allow_remote=False, **groups)
         meshes = [mesh for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)]
         _load_textures(meshes)
+        finite = all(np.isfinite(mesh.triangles).all() for mesh in meshes)
     except Exception as error:  # a broken file surfaces as whatever its reader trips over
         raise _unusable(f"The mesh cannot be read ({error})", path) from error
     if not meshes:
         raise _unusable("The mesh holds no triangles", path)
     if sum(len(mesh.faces) for mesh in meshes) < _declared_faces(path):
         raise _unusable("The mesh is truncated: it has fewer faces than its header says", path)
-    if not all(np.isfinite(mesh.triangles).all() for mesh in meshes):
+    if not finite:
         raise _unusable("The mesh has corners that are not finite", path)
     return meshes
 

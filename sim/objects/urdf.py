@@ -62,8 +62,8 @@ def read_object_urdf(path: Path) -> UrdfObject:
         raise _unusable(f"The URDF has {len(links)} links with a shape, and an object has one", path)
     try:
         return _read_link(links[0], path)
-    except (TypeError, ValueError) as error:
-        raise _unusable(f"The URDF holds a number that is none ({error})", path) from error
+    except (AttributeError, TypeError, ValueError) as error:
+        raise _unusable(f"The URDF lacks a number or holds one that is none ({error})", path) from error
 
 
 def _read_link(link: etree._Element, path: Path) -> UrdfObject:

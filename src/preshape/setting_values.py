@@ -32,8 +32,32 @@ POSITIVE = (
     *("frames_per_s", "max_time_s", "base_height_m"),
 )
 """Settings that are numbers greater than 0, by the last part of their names."""
-NOT_NEGATIVE = ("friction", "density", "weight_decay", "validation_fraction", "position_m", "rotation_rad")
+NOT_NEGATIVE = ("friction", "density", "weight_decay", "position_m", "rotation_rad")
 """Settings that are numbers of at least 0, by the last part of their names."""
+SHARES = ("validation_fraction",)
+"""Settings that are numbers from 0 to below 1, by the last part of their names."""
+ONE_OF = {
+    "schedule": ("steps", "one_cycle"),
+    "accelerator": ("auto", "cpu", "gpu"),
+    "precision": ("32-true", "16-mixed", "bf16-mixed"),
+}
+"""Settings that have few values, by the last part of their names."""
+PATHS = (
+    *(
+        "view",
+        "rgb_file",
+        "depth_file",
+        "camera_file",
+        "weights",
+        "output",
+        "table",
+        "root",
+        "runs",
+        "result",
+    ),
+    *("results", "page", "card", "evaluation", "metrics", "families", "effort", "first_training", "folder"),
+)
+"""Settings that are files or folders, by the last part of their names."""
 OR_NULL = ("workers", "data.trials", "trials_learned", "poses_per_object", "shard", "density")
 """Those that may be null, by the end of their names."""
 KINDS: tuple[tuple[tuple[type, ...], str], ...] = (
@@ -60,6 +84,12 @@ def check_values(cfg: DictConfig) -> None:
             raise _not_possible(key, value, "a number greater than 0")
         if name in NOT_NEGATIVE and not (_is(value, Real) and 0 <= value < math.inf):
             raise _not_possible(key, value, "a number that is not negative")
+        if name in SHARES and not (_is(value, Real) and 0 <= value < 1):
+            raise _not_possible(key, value, "a number from 0 to below 1")
+        if name in ONE_OF and value not in ONE_OF[name]:
+            raise _not_possible(key, value, f"one of {', '.join(ONE_OF[name])}")
+        if name in PATHS and not isinstance(value, str | None):
+            raise _not_possible(key, value, f"a path, such as ./{value}")
     if HydraConfig.initialized():
         _check_kinds(cfg)
 

@@ -120,7 +120,7 @@ def _metadata(table: pa.Table, path: Path, table_format: TableFormat) -> dict[st
     try:
         about = json.loads((table.schema.metadata or {})[METADATA_KEY])
         kind, version = about.pop("kind"), about.pop("version")
-    except (KeyError, ValueError, AttributeError) as error:
+    except (KeyError, ValueError, AttributeError, TypeError, RecursionError) as error:
         raise InputError(
             f"The Parquet file is not a table of {table_format.kind} of this project",
             where=path,

@@ -5,6 +5,7 @@ import logging
 import struct
 import zlib
 from pathlib import Path
+from tokenize import TokenError
 
 import numpy as np
 from jaxtyping import Float32, UInt8
@@ -127,7 +128,7 @@ def _read_array(path: Path, file: CameraFile) -> np.ndarray:
         values = np.load(path, mmap_mode="r", allow_pickle=False)
     except FileNotFoundError as error:
         raise InputError("The depth file does not exist", where=path, fix="check the path") from error
-    except (OSError, ValueError, EOFError) as error:
+    except (OSError, ValueError, EOFError, SyntaxError, TokenError) as error:  # a damaged head is parsed
         raise InputError(
             f"The depth file cannot be read: it is no array of numbers ({error})",
             where=path,
