@@ -35,6 +35,7 @@ class BestSoFar:
         self.merit = merit(self._values["log_posterior"], self._values["violation"])
         self._evaluations = 0
         self._history = [self._values["success_prob"].copy()]
+        self._path = [self.theta.copy()]
 
     def see(self, drawn: Float64[np.ndarray, "n s d"]) -> Float64[np.ndarray, "n s"]:
         """The merits of n more grasps for each start, which lie within the bounds."""
@@ -51,6 +52,7 @@ class BestSoFar:
         for name, value in values.items():
             self._values[name][rows] = value.reshape(count, starts)[taken, rows]
         self._history.append(self._values["success_prob"].copy())
+        self._path.append(self.theta.copy())
         return merits
 
     def result(self, ranking: Int[np.ndarray, "s"] | None = None, *, counted: bool = True) -> PlanResult:
@@ -76,6 +78,7 @@ class BestSoFar:
             runtime_s=perf_counter() - self._begin,
             climb=tuple(zip(*(probs.tolist() for probs in self._history), strict=True)),
             violation_m=self._values["violation"],
+            path=tuple(np.stack(self._path, axis=1)),
         )
 
     def _evaluate(self, theta: Float64[np.ndarray, "n d"]) -> dict[str, Float64[np.ndarray, "n"]]:

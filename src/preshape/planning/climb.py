@@ -34,6 +34,7 @@ class Climb:
         self.idle = np.zeros(starts, dtype=np.int64)
         self.status = [PlanStatus.ITERATION_LIMIT] * starts
         self._probs = [[prob] for prob in first.success_prob.tolist()]
+        self._path = [[theta] for theta in first.theta]
 
     @property
     def iterations(self) -> Int64[np.ndarray, "s"]:
@@ -57,8 +58,10 @@ class Climb:
         self.step[rows] = step
         better = (to.merit >= self.best.merit[rows]).nonzero()[0]
         self.best[rows[better]] = to[better]
-        for row, prob in zip(rows.tolist(), self.best.success_prob[rows].tolist(), strict=True):
+        best = self.best[rows]
+        for row, prob, theta in zip(rows.tolist(), best.success_prob.tolist(), best.theta, strict=True):
             self._probs[row].append(prob)
+            self._path[row].append(theta)
 
     def stop(self, rows: Int64[np.ndarray, "m"], status: PlanStatus) -> None:
         """Some of the starts climb no further."""
@@ -86,4 +89,5 @@ class Climb:
             runtime_s=landscape.runtime_s,
             climb=self.history,
             violation_m=best.violation,
+            path=tuple(np.array(thetas) for thetas in self._path),
         )

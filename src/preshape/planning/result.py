@@ -45,6 +45,8 @@ class PlanResult:
             iteration.
         violation_m: how far the planned grasps are from what is allowed; 0 where they are allowed, or where
             there is no constraint.
+        path: for each start the grasps whose probabilities are in `climb`, from the initial to the planned
+            one; empty for a plan that was read from a file, which does not keep them.
     """
 
     theta: Float64[np.ndarray, "s d"]
@@ -60,6 +62,7 @@ class PlanResult:
     runtime_s: float
     climb: tuple[tuple[float, ...], ...]
     violation_m: Float64[np.ndarray, "s"]
+    path: tuple[Float64[np.ndarray, "_ d"], ...] = ()
 
     @property
     def best(self) -> int:

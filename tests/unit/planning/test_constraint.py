@@ -68,6 +68,10 @@ def test_a_plan_from_allowed_grasps_is_allowed_and_never_worse(planner: Planner)
     assert (OutsideDisc().slack(result.theta).values >= 0).all()
     assert (result.log_posterior >= result.initial_log_posterior).all()
     assert all((np.diff(probs) >= 0).all() for probs in result.climb)
+    for start, (path, probs) in enumerate(zip(result.path, result.climb, strict=True)):
+        np.testing.assert_array_equal(path[[0, -1]], [result.initial_theta[start], result.theta[start]])
+        said = objective.success_prob(torch.from_numpy(path)).numpy()
+        np.testing.assert_allclose(said, probs, rtol=1e-12)
 
 
 def test_the_ascent_slides_along_what_is_not_allowed() -> None:
