@@ -32,7 +32,12 @@ def repeat(
     laboratory: Laboratory, scenes: SceneTable, trial: Trial, spectator: Spectator | None = None
 ) -> Trial:
     """Try a recorded grasp again, on its own scene and with its own seed."""
-    grasp = PlannedGrasp(
+    return laboratory.runner.run(scenes.by_id[trial.scene_id], recorded_grasp(trial), spectator)
+
+
+def recorded_grasp(trial: Trial) -> PlannedGrasp:
+    """The grasp that a trial tried."""
+    return PlannedGrasp(
         trial_id=trial.trial_id,
         planner=trial.planner,
         face=trial.face,
@@ -41,4 +46,3 @@ def repeat(
         success_prob=trial.success_prob,
         seed=trial.seed,
     )
-    return laboratory.runner.run(scenes.by_id[trial.scene_id], grasp, spectator)

@@ -123,7 +123,7 @@ class TrialRunner:
         model = self.objects.load(scene.object_id)
         start = time.perf_counter()
         placed = self.meaning.place(scene, grasp.planned, self.table, self.look)
-        motion = self._plan_motion(scene, grasp, placed, model)
+        motion = self.plan_motion(scene, grasp, placed, model)
         planned = time.perf_counter()
         if isinstance(motion, MotionFailure):
             return self._row(scene, grasp, motion.outcome, planning_s=planned - start)
@@ -140,7 +140,7 @@ class TrialRunner:
         )
         return replace(trial, soft_label=self._soft_label(scene, grasp, placed, motion, model))
 
-    def _plan_motion(
+    def plan_motion(
         self, scene: Scene, grasp: PlannedGrasp, placed: PlacedGrasp, model: ObjectModel
     ) -> GraspMotion | MotionFailure:
         """The arm's motion to a planned grasp, or why there is none."""

@@ -82,12 +82,28 @@ class World:
         """Whether the table or the floor touches the object."""
         return bool(self._touching() & self._supports)
 
+    @property
+    def hand_contacts(self) -> list[tuple[str, Float[np.ndarray, "3"]]]:
+        """Points (m, world) where the hand touches the object, each with the name of the hand's link."""
+        hand = set() if self.robot is None else self.robot.hand_links
+        return [
+            (body.name, np.asarray(point.position, dtype=np.float64))
+            for contact in self.scene.get_contacts()
+            if self._object in {body.entity for body in contact.bodies}
+            for body in contact.bodies
+            if body.entity in hand
+            for point in contact.points
+            if _touches(point)
+        ]
+
     def _touching(self) -> set[sapien.Entity]:
         touching = set()
         for contact in self.scene.get_contacts():
             entities = {body.entity for body in contact.bodies}
-            if self._object in entities and any(
-                point.separation < TOUCHING_M or np.any(point.impulse) for point in contact.points
-            ):
+            if self._object in entities and any(_touches(point) for point in contact.points):
                 touching |= entities
         return touching - {self._object}
+
+
+def _touches(point: sapien.physx.PhysxContactPoint) -> bool:
+    return point.separation < TOUCHING_M or bool(np.any(point.impulse))

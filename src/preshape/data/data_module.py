@@ -79,15 +79,7 @@ class GraspDataModule(LabelledData):
         self.data_hash = data_hash(*self._folders)
 
     def _read(self, folder: Path) -> tuple[SceneTable, TrialTable]:
-        scenes, trials = read_data_set(folder, self._space)
-        if trials.origin != self._origin:
-            raise InputError(
-                f"The trials were collected with {_choices(trials.origin)}, "
-                f"but the configuration chose {_choices(self._origin)}",
-                where=folder,
-                fix=f"choose {_choices(trials.origin)}, or another dataset",
-            )
-        return scenes, trials
+        return read_data_set(folder, self._space, self._origin)
 
     def _thinned(self, rows: Int[np.ndarray, "rows"], executed: int) -> Int[np.ndarray, "kept"]:
         """The rows that are kept if fewer trials than were executed are to be learned from."""
@@ -138,7 +130,3 @@ class GraspDataModule(LabelledData):
         self._views.fill(list(scenes.values()), with_patches=with_patches)
         if not with_patches:
             self.train, self.validation, self.test = (part.without_patches() for part in parts)
-
-
-def _choices(origin: TableOrigin) -> str:
-    return f"robot={origin.robot} objects={origin.object_set} camera={origin.camera}"

@@ -130,11 +130,19 @@ def read_trials(path: str | Path, space: GraspSpace) -> TrialTable:
     return trials
 
 
-def read_data_set(folder: str | Path, space: GraspSpace) -> tuple[SceneTable, TrialTable]:
+def read_data_set(
+    folder: str | Path, space: GraspSpace, origin: TableOrigin | None = None
+) -> tuple[SceneTable, TrialTable]:
     """Read the scenes and trials of a data set, and check that they belong together.
 
+    Args:
+        folder: where its two files lie.
+        space: grasp space of theta.
+        origin: what it must have been collected with; None for anything.
+
     Raises:
-        InputError: as `read_scenes` and `read_trials`, and if a trial's scene is missing.
+        InputError: as `read_scenes` and `read_trials`, and if a trial's scene is missing, or the data set has
+            another origin.
     """
     folder = Path(folder)
     scenes, trials = read_scenes(folder / SCENES_FILE), read_trials(folder / TRIALS_FILE, space)
@@ -146,6 +154,13 @@ def read_data_set(folder: str | Path, space: GraspSpace) -> tuple[SceneTable, Tr
             f"{SCENES_FILE} and {TRIALS_FILE} do not match: {len(strangers)} trials lack their scene",
             where=folder,
             fix=f"take both files from one run of `{COLLECT}`",
+        )
+    if origin is not None and trials.origin != origin:
+        raise InputError(
+            f"The trials were collected with {trials.origin.choices}, "
+            f"but the configuration chose {origin.choices}",
+            where=folder,
+            fix=f"choose {trials.origin.choices}, or another dataset",
         )
     return scenes, trials
 

@@ -26,6 +26,11 @@ class TableOrigin:
     object_set: str
     camera: str
 
+    @property
+    def choices(self) -> str:
+        """The same as on the command line."""
+        return f"robot={self.robot} objects={self.object_set} camera={self.camera}"
+
 
 @dataclass(frozen=True, eq=False)
 class SceneTable:

@@ -115,6 +115,7 @@ def _plan(content: dict[str, Any], space: GraspSpace) -> GraspPlan:
         evaluations=int(content["evaluations"]),
         runtime_s=float(content["runtime_s"]),
         climb=tuple(tuple(_numbers(grasp["climb"]).tolist()) for grasp in by_start),
+        path=(),
     )
     return GraspPlan(
         planner=str(content["planner"]),

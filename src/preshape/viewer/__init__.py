@@ -1,0 +1,1 @@
+"""The viewer in the browser: scenes, grasps, climbs and executed trials."""

@@ -1,0 +1,38 @@
+"""Look at scenes, grasps, climbs and trials in the browser: `python src/view.py`."""
+
+from functools import partial
+
+import numpy as np
+from hydra.utils import instantiate
+from omegaconf import DictConfig
+
+from preshape.data.tables import read_data_set
+from preshape.entry_point import entry_point
+from preshape.perception.view_choice import load_chosen_view
+from preshape.viewer.saved_view_session import SavedViewSession
+from preshape.viewer.serving import serve
+from preshape.viewer.trial_session import FirstTrial, TrialParts, TrialSession
+
+
+@entry_point("view")
+def main(cfg: DictConfig) -> None:
+    """Show a plan for a saved view, or the trials of a table, until interrupted."""
+    files = (cfg.rgb_file, cfg.depth_file, cfg.camera_file)
+    robot = instantiate(cfg.robot.description)
+    planner = None if cfg.robot.heuristic is None else instantiate(cfg.view_planner)
+    if planner is not None and cfg.weights is not None:
+        planner = planner.with_network(instantiate(cfg.model), cfg.weights)
+    if any(name is not None for name in (cfg.view, *files)):
+        view = load_chosen_view(cfg.view, *files)
+        plan = planner.plan(view, np.random.default_rng(cfg.seed))
+        build = partial(SavedViewSession, robot=robot, observation=view, plan=plan)
+    else:
+        first = FirstTrial(cfg.object, cfg.outcome, cfg.trial)
+        scenes, trials = read_data_set(cfg.table, robot.grasp_space, instantiate(cfg.laboratory.origin))
+        parts = TrialParts(robot, scenes, trials, instantiate(cfg.stage), planner)
+        build = partial(TrialSession, parts=parts, first=first)
+    serve(instantiate(cfg.server), build)
+
+
+if __name__ == "__main__":
+    main()
