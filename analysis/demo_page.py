@@ -2,14 +2,11 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-
-from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from analysis.evaluation_folder import read_evaluation
+from analysis.page_template import page_template
 from analysis.scene_section import scene_section
 from analysis.training_metrics import read_training_metrics
-from analysis.wording import planner_name
 from preshape.errors import InputError
 from preshape.files import atomic_path
 from preshape.grasps.space import GraspSpace
@@ -58,7 +55,7 @@ class DemoPage:
             for scene in scenes:
                 sections.append(scene_section(evaluation, scene, self.climber, self.hand))
                 progress.advance()
-        page = _template().render(
+        page = page_template("demo.html").render(
             summary=evaluation.summary,
             planners=evaluation.planners,
             origin=evaluation.trials.origin,
@@ -70,17 +67,3 @@ class DemoPage:
         with atomic_path(self.output) as temporary:
             temporary.write_text(page, encoding="utf-8")
         return f"Lifted: {evaluation.lifted}. Page: {Path(self.output)}"
-
-
-def _template() -> Any:
-    environment = Environment(
-        loader=PackageLoader("analysis"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["planner"] = planner_name
-    environment.filters["percent"] = lambda share: "–" if share is None else f"{100 * share:.0f} %"
-    environment.filters["prob"] = lambda prob: "–" if prob is None or prob != prob else f"{prob:.2f}"
-    return environment.get_template("demo.html")

@@ -9,6 +9,8 @@ from jaxtyping import UInt8
 from matplotlib.figure import Figure
 from PIL import Image
 
+from preshape.errors import InputError
+
 QUALITY = 82
 """Of WebP, 0-100."""
 
@@ -27,10 +29,19 @@ def embedded_figure(figure: Figure) -> str:
     return _data_uri(buffer.getvalue())
 
 
-def embedded_animation(path: Path) -> str:
-    """Data URI of a WebP file."""
-    return _data_uri(path.read_bytes())
+def embedded_vector(svg: bytes) -> str:
+    """Data URI of a drawing."""
+    return _data_uri(svg, "image/svg+xml")
 
 
-def _data_uri(content: bytes) -> str:
-    return f"data:image/webp;base64,{base64.b64encode(content).decode('ascii')}"
+def embedded_file(path: Path) -> str:
+    """Data URI of a WebP or PNG file; raises InputError if it cannot be read."""
+    try:
+        return _data_uri(path.read_bytes(), f"image/{path.suffix.removeprefix('.')}")
+    except OSError as error:
+        problem = f"The picture cannot be read: {error.strerror}"
+        raise InputError(problem, where=path, fix="check the path") from error
+
+
+def _data_uri(content: bytes, kind: str = "image/webp") -> str:
+    return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float
 
+from analysis.roc_curves import stored_curve
 from preshape.errors import InputError
 from preshape.evaluation.fold_summary import (
     SUMMARY_FILE,
@@ -15,6 +16,7 @@ from preshape.evaluation.fold_summary import (
     by_split,
     finished_folds,
     split_figures,
+    split_roc,
 )
 from preshape.files import read_json
 
@@ -70,6 +72,7 @@ class LearningRun:
             "group": self.group,
             **{key: found[key] for key in ("folds", "n", "positives")},
             **{name: metrics[key] for name, key in names.items() if key in metrics},
+            "roc": stored_curve(split_roc(self.folds)),
             "baselines": {
                 baseline: {
                     name: metrics[f"{baseline}_{key}"]

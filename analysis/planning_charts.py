@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from analysis.dataset_charts import BLUE, ORANGE
-from analysis.paper_simulation import ALL, paper_number
+from analysis.paper_figures import ALL, paper_number
 from analysis.wording import plain_name, planner_name
 
 Shown = Literal["rate", "predicted"]
@@ -59,17 +59,17 @@ def _names(runs: Sequence[Run]) -> list[str]:
 
 
 def _draw(axes: Axes, run: Run, names: Sequence[str], shown: Shown) -> None:
-    for y, name in enumerate(names):
-        rate = run if name == ALL else run["objects"].get(name)
-        if rate is not None and rate["executed"]:
-            if shown == "rate":
-                axes.plot((rate["low"], rate["high"]), (y, y), color=BLUE, linewidth=1.2)
-            else:
-                axes.plot(rate["rate"], y, **EXECUTED)
-            axes.plot(rate[shown], y, **OURS)
-        paper = getattr(paper_number(run["condition"], run["planner"], name), shown)
-        if paper is not None:
-            axes.plot(paper, y, **PAPER)
+    of_rows = [run if name == ALL else run["objects"].get(name) for name in names]
+    known = [(y, rate) for y, rate in enumerate(of_rows) if rate is not None and rate["executed"]]
+    rows = [y for y, _ in known]
+    if shown == "rate":
+        axes.hlines(rows, *([rate[end] for _, rate in known] for end in ("low", "high")), BLUE, linewidth=1.2)
+    else:
+        axes.plot([rate["rate"] for _, rate in known], rows, **EXECUTED)
+    axes.plot([rate[shown] for _, rate in known], rows, **OURS)
+    paper = [getattr(paper_number(run["condition"], run["planner"], name), shown) for name in names]
+    printed = [(value, y) for y, value in enumerate(paper) if value is not None]
+    axes.plot([value for value, _ in printed], [y for _, y in printed], **PAPER)
 
 
 def _dress(axes: Axes, names: Sequence[str], *, named: bool) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from analysis.paper_simulation import ALL, paper_number
+from analysis.paper_figures import ALL, paper_number
 from analysis.wording import plain_name, planner_name, table_row
 
 Rows = Sequence[Mapping[str, Any]]

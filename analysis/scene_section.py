@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import UInt8
 
 from analysis.climb_chart import ClimbChart, climb_chart
-from analysis.embedding import embedded_animation, embedded_figure, embedded_picture
+from analysis.embedding import embedded_figure, embedded_file, embedded_picture
 from analysis.evaluation_folder import Evaluation
 from analysis.wording import outcome_mark, plain_name, planner_name
 from preshape.data.scene import Scene
@@ -109,7 +109,7 @@ def _trial_entry(evaluation: Evaluation, trial: Trial) -> TrialEntry:
         predicted=trial.success_prob,
         outcome=trial.outcome.value,
         mark=outcome_mark(trial.outcome),
-        film=None if film is None else embedded_animation(film),
+        film=None if film is None else embedded_file(film),
     )
 
 

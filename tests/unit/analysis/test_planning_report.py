@@ -7,7 +7,7 @@ from PIL import Image
 from synthetic_scenes import allegro_space
 
 from analysis.evaluation_folder import read_evaluation
-from analysis.paper_simulation import ALL, paper_number
+from analysis.paper_figures import ALL, paper_number
 from analysis.planning_report import PlanningReport
 from analysis.planning_runs import of_planner, outcome_by_scene
 from preshape.errors import InputError

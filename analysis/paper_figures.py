@@ -1,4 +1,4 @@
-"""The paper's numbers of its simulation experiment: success rates and predicted probabilities."""
+"""The paper's numbers in the figures of its experiments: success rates and predicted probabilities."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -9,7 +9,7 @@ import pandas as pd
 
 ALL = "all"
 """Stands for all objects together."""
-COLUMNS = {"paper": "inference", "paper_constrained": "inference"}
+COLUMNS = {"paper": "inference", "paper_constrained": "inference", "initial": "heuristic"}
 """Planners that stand in the paper under another name."""
 
 
@@ -28,7 +28,7 @@ class PaperNumber:
 
 @cache
 def _table() -> pd.DataFrame:
-    frame = pd.read_csv(Path(__file__).with_name("paper_simulation.csv"))
+    frame = pd.read_csv(Path(__file__).with_name("paper_figures.csv"))
     return frame.set_index(["condition", "object"])
 
 
@@ -36,7 +36,7 @@ def paper_number(condition: str, planner: str, name: str) -> PaperNumber:
     """The paper's numbers.
 
     Args:
-        condition: `seen` or `unseen`; of others the paper has nothing.
+        condition: `seen`, `unseen`, `real_robot` or `two_finger`; of others the paper has nothing.
         planner: name of the planner.
         name: name of the object, or `ALL`.
     """
@@ -50,3 +50,8 @@ def paper_number(condition: str, planner: str, name: str) -> PaperNumber:
     column = COLUMNS.get(planner, planner)
     percent = value(column)
     return PaperNumber(None if percent is None else percent / 100, value(f"{column}_predicted"))
+
+
+def paper_objects(condition: str) -> list[str]:
+    """Objects of one condition in the paper's order, `ALL` at the end."""
+    return [str(name) for name in _table().loc[condition].index]
