@@ -1,12 +1,12 @@
 """What the machine can do."""
 
 import os
-import platform
 import time
-from pathlib import Path
 from typing import Any
 
 import torch
+
+from preshape.provenance import processor_name
 
 SIZE = 1536
 RUNS = 8
@@ -25,13 +25,4 @@ def matrix_product_rate() -> float:
 
 def describe_machine() -> dict[str, Any]:
     """Processor, cores and threads."""
-    return {"processor": _processor(), "cores": os.cpu_count(), "threads": torch.get_num_threads()}
-
-
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        lines = []
-    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.processor()
+    return {"processor": processor_name(), "cores": os.cpu_count(), "threads": torch.get_num_threads()}

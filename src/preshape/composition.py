@@ -102,10 +102,14 @@ def _planners(cfg: DictConfig) -> Iterator[tuple[str, Any]]:
         yield f"planners.{name}", cfg.planners[name]
 
 
+def chosen_option(group: str) -> str | None:
+    """Which option of a group the command line, or a default, chose; None outside of a command."""
+    return HydraConfig.get().runtime.choices.get(group) if HydraConfig.initialized() else None
+
+
 def _choice(cfg: DictConfig, group: str) -> str:
     """How the user chose this part, as on the command line: `robot=lbr4_allegro`."""
-    option = HydraConfig.get().runtime.choices.get(group) if HydraConfig.initialized() else None
-    option = option or OmegaConf.select(cfg, f"{group}.name", throw_on_missing=False)
+    option = chosen_option(group) or OmegaConf.select(cfg, f"{group}.name", throw_on_missing=False)
     return f"{group}={option}" if option else group
 
 

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from preshape.errors import InputError
 from preshape.files import exclusive
+from preshape.logged_model import TrainedModel, log_model, register_model
+from preshape.provenance import command_line
 from preshape.tracking import SweepMember, TrackedRun
 
 if TYPE_CHECKING:
@@ -57,6 +59,12 @@ class MlflowRun:
     def keep(self, file: Path) -> None:
         """Keep a copy of a file with the run."""
         self._client.log_artifact(self._run_id, str(file))
+
+    def keep_model(self, model: TrainedModel) -> None:
+        """Keep a network for `mlflow.pyfunc.load_model`, and register it unless it is one of a sweep."""
+        model_id = log_model(self._client, self._run_id, model)
+        if self.parent is None:
+            register_model(self._client, self._run_id, model_id, model.name)
 
 
 class MlflowTracking:
@@ -106,6 +114,7 @@ class MlflowTracking:
         """Connection, the run, and the number of the sweep's run."""
         # Takes seconds to import, and would otherwise report its use to its makers.
         os.environ.setdefault("MLFLOW_DISABLE_TELEMETRY", "true")
+        os.environ.setdefault("MLFLOW_ENABLE_ARTIFACTS_PROGRESS_BAR", "false")
         from mlflow import MlflowClient
         from mlflow.exceptions import MlflowException
         from sqlalchemy.exc import SQLAlchemyError
@@ -116,6 +125,7 @@ class MlflowTracking:
             with self._alone():
                 client = MlflowClient(f"sqlite:///{self._database}?timeout={PATIENCE_S}")
                 experiment_id = self._experiment_id(client)
+                tags = {**tags, **_source(tags)}
                 if sweep is None:
                     parent_id, run = None, client.create_run(experiment_id, tags=dict(tags), run_name=name)
                 else:
@@ -152,6 +162,12 @@ class MlflowTracking:
             if "RUNNING" not in states:
                 worst = next((state for state in ("FAILED", "KILLED") if state in states), "FINISHED")
                 client.set_terminated(parent_id, worst)
+
+
+def _source(tags: Mapping[str, str]) -> dict[str, str]:
+    """What MLflow's pages show as the source and the version of a run."""
+    revision = tags.get("git_revision", "unknown").removesuffix("-dirty")
+    return {"mlflow.source.name": command_line(), "mlflow.source.git.commit": revision}
 
 
 def _sweep_run(

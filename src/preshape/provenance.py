@@ -1,6 +1,7 @@
 """Where a result comes from: the command, the code, the versions, the seed, the date."""
 
 import os
+import platform
 import subprocess
 import sys
 from datetime import UTC, datetime
@@ -57,6 +58,25 @@ def git_revision() -> str:
     except (OSError, subprocess.SubprocessError):
         return "unknown"
     return answer.stdout.strip()
+
+
+def device_name(accelerator: str) -> str:
+    """What computes: the graphics card, or the processor."""
+    import torch  # takes seconds, which commands that only ask for the revision need not wait
+
+    if accelerator != "cpu" and torch.cuda.is_available():
+        return str(torch.cuda.get_device_name())
+    return processor_name()
+
+
+def processor_name() -> str:
+    """The processor as it calls itself."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        lines = []
+    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.processor()
 
 
 def package_versions() -> dict[str, str]:

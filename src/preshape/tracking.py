@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
+from preshape.logged_model import TrainedModel
+
 
 @dataclass(frozen=True)
 class SweepMember:
@@ -47,6 +49,9 @@ class TrackedRun(Protocol):
     def keep(self, file: Path) -> None:
         """Keep a copy of a file with the run."""
 
+    def keep_model(self, model: TrainedModel) -> None:
+        """Keep a network so that others can use it without knowing how it was trained."""
+
 
 @runtime_checkable
 class Tracking(Protocol):
@@ -73,6 +78,9 @@ class UntrackedRun:
 
     def keep(self, file: Path) -> None:
         """Leave the file where it is."""
+
+    def keep_model(self, model: TrainedModel) -> None:
+        """Leave its files where they are."""
 
 
 class NoTracking:

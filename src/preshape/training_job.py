@@ -10,8 +10,9 @@ from preshape.data.labelled_data import LabelledData
 from preshape.errors import InputError
 from preshape.evaluation.fold_summary import summarise
 from preshape.files import read_json
-from preshape.models.success_model import GraspNetwork
-from preshape.provenance import git_revision
+from preshape.logged_model import TrainedModel, seen_parts
+from preshape.models.success_model import GraspNetwork, SuccessModel
+from preshape.provenance import device_name, git_revision
 from preshape.source_digest import source_digest
 from preshape.tracking import NoTracking, SweepMember, TrackedRun, Tracking
 from preshape.training import METRICS_FILE, WEIGHTS_FILE, TrainerSettings, is_first_process, keep_files, train
@@ -65,8 +66,9 @@ class TrainingJob:
         if not self.in_sweep:
             data.setup()
             tracking = tracking if is_first_process() else NoTracking()
-            with tracking.run(self.name, self.config, {"git_revision": git_revision()}) as run:
+            with tracking.run(self.name, self.config, _tags(data, settings)) as run:
                 result = train(model, data, settings, self.folder, run, self._description(model, data))
+                self._keep_model(model, data, run)
             return f"{self.name}: {result.metrics.summary()}; weights: {result.weights}"
         _refuse_several_devices(settings)
         data.setup()
@@ -78,12 +80,13 @@ class TrainingJob:
             member_digest=_digest(identity),
             trained=self._is_trained(identity),
         )
-        tags = {"git_revision": git_revision(), "group": group.name}
+        tags = {**_tags(data, settings), "group": group.name}
         with tracking.run(self.folder.name, self.config, tags, member) as run:
             if member.trained:
-                outcome = self._had_been_trained(run, settings)
+                outcome = self._had_been_trained(model, data, settings, run)
             else:
                 outcome = train(model, data, settings, self.folder, run, description).metrics.summary()
+                self._keep_model(model, data, run)
             summary = summarise(group, self._decisive(identity))
             if run.parent is not None:
                 run.parent.log(summary.scalars(), summary.folds)
@@ -92,14 +95,33 @@ class TrainingJob:
         name = f"{group.name}/{self.folder.name}"
         return f"{name}: {outcome}; weights: {self.folder / WEIGHTS_FILE}; {summary.in_words()}"
 
-    def _had_been_trained(self, run: TrackedRun, settings: TrainerSettings) -> str:
+    def _had_been_trained(
+        self, model: GraspNetwork, data: LabelledData, settings: TrainerSettings, run: TrackedRun
+    ) -> str:
         """Make up for what is missing of the run's record, if the files came to their end and it did not."""
         if not run.was_finished:
             scalars = read_json(self.folder / METRICS_FILE)["scalars"].items()
             known = {f"test_{name}": value for name, value in scalars if value is not None}
             run.log(known, settings.learning.iterations)
             keep_files(self.folder, run)
+            data.render(with_patches="patch" in model.looks_at)
+            self._keep_model(model, data, run)
         return "had been trained before"
+
+    def _keep_model(self, model: GraspNetwork, data: LabelledData, run: TrackedRun) -> None:
+        """Keep a network that predicts success, with the first held-out trial as its example."""
+        if isinstance(model, SuccessModel):
+            example = data.test[[0]]
+            run.keep_model(
+                TrainedModel(
+                    name=self.name,
+                    weights=self.folder / WEIGHTS_FILE,
+                    settings=self.config["model"],
+                    theta_names=data.test.trials.space.names,
+                    view=seen_parts(example.view, model.looks_at),
+                    theta=example.theta,
+                )
+            )
 
     def _description(self, model: GraspNetwork, data: LabelledData) -> dict[str, Any]:
         """What the file of the metrics says about the job."""
@@ -126,6 +148,15 @@ class TrainingJob:
         found = read_json(self.folder / METRICS_FILE)
         same_fold = all(found.get(key) == self.about[key] for key in ("split", "fold"))
         return same_fold and self._decisive(identity).items() <= found.get("identity", {}).items()
+
+
+def _tags(data: LabelledData, settings: TrainerSettings) -> dict[str, str]:
+    """By what runs are found: the code, the data, and what computed."""
+    return {
+        "git_revision": git_revision(),
+        "data_hash": data.data_hash,
+        "device": device_name(settings.accelerator),
+    }
 
 
 def _modules(*parts: object) -> tuple[str, ...]:

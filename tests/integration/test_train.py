@@ -2,15 +2,23 @@
 
 import json
 import os
+import pickle
 import subprocess
 import sys
 from pathlib import Path
 
+import cloudpickle
+import mlflow
+import pandas as pd
 import pytest
 from mlflow import MlflowClient
-from synthetic_scenes import write_data_set
+from synthetic_scenes import BoxRenderer, make_scene, write_data_set
 
+from preshape.configured_planner import plan_view
+from preshape.errors import InputError
 from preshape.paths import project_root
+from preshape.perception.view_files import save_view
+from preshape.provenance import processor_name
 
 FIXTURES = project_root() / "tests" / "fixtures"
 
@@ -43,27 +51,60 @@ def run_train(place: Path, *overrides: str) -> "subprocess.CompletedProcess[str]
     )
 
 
-def test_a_training_from_tables_to_tracked_weights(place: Path) -> None:
+@pytest.fixture(scope="module")
+def trained(place: Path) -> "subprocess.CompletedProcess[str]":
+    """A finished training of the default network in `place`."""
     done = run_train(place)
     assert done.returncode == 0, done.stderr
+    return done
+
+
+def test_a_training_from_tables_to_tracked_weights(
+    place: Path, trained: "subprocess.CompletedProcess[str]"
+) -> None:
     folder = place / "outputs" / "train" / "palm_points"
     metrics = json.loads((folder / "metrics.json").read_text())
     assert metrics["command"].startswith("python src/train.py")
-    last_line = done.stdout.splitlines()[-1]
+    last_line = trained.stdout.splitlines()[-1]
     assert f"on {metrics['n']} held-out trials" in last_line
     assert str(folder / "model.safetensors") in last_line
     sidecar = json.loads((folder / "model.safetensors.json").read_text())
     assert sidecar["metrics"]["auc"] == metrics["auc"]
 
     client = MlflowClient(f"sqlite:///{place / 'mlflow.db'}")
-    experiment = client.get_experiment_by_name("preshape")
+    experiment = client.get_experiment_by_name("preshape/allegro_grocery")
     assert experiment is not None
     (run,) = client.search_runs([experiment.experiment_id])
     assert run.info.status == "FINISHED"
     assert run.data.params["model.name"] == "palm_points"
+    assert run.data.tags["data_hash"] == sidecar["data_hash"]
+    assert run.data.tags["device"] == processor_name()
+    assert run.data.tags["mlflow.source.name"] == metrics["command"]
     assert [point.step for point in client.get_metric_history(run.info.run_id, "train_loss")] == [3, 6]
     kept = {file.path for file in client.list_artifacts(run.info.run_id)}
     assert {"roc.png", "model.safetensors", "model.safetensors.json", "metrics.json"} <= kept
+
+
+@pytest.mark.usefixtures("trained")
+def test_the_registered_model_is_the_network(place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (pickle, cloudpickle):
+        for name in ("load", "loads"):
+            monkeypatch.setattr(module, name, None)
+    mlflow.set_tracking_uri(f"sqlite:///{place / 'mlflow.db'}")
+    logged = mlflow.pyfunc.load_model("models:/palm_points/1")
+
+    save_view(place / "view", BoxRenderer()(make_scene(0)))
+    weights = place / "outputs" / "train" / "palm_points" / "model.safetensors"
+    plan = plan_view(place / "view", weights, "planner=max_eval")
+    grasps = pd.DataFrame(plan.result.initial_theta, columns=list(plan.space.names))
+    probs = logged.predict(grasps, params={"view": str(place / "view")})["success_prob"]
+    assert probs.to_numpy() == pytest.approx(plan.result.initial_success_prob, abs=1e-6)
+
+    predictions = pd.read_parquet(weights.with_name("predictions.parquet"))
+    (prob,) = logged.predict(logged.input_example, params={"view": "example"})["success_prob"]
+    assert prob == pytest.approx(predictions["success_prob"][0], abs=1e-6)
+    with pytest.raises(InputError, match="none is given"):
+        logged.predict(grasps)
 
 
 def test_a_sweep_from_an_empty_store_can_be_started_again(place: Path) -> None:
@@ -78,7 +119,7 @@ def test_a_sweep_from_an_empty_store_can_be_started_again(place: Path) -> None:
     assert again.stdout.count("had been trained before") == 1
 
     client = MlflowClient(f"sqlite:///{place / 'outputs' / 'sweep.db'}")
-    experiment = client.get_experiment_by_name("preshape")
+    experiment = client.get_experiment_by_name("preshape/allegro_grocery")
     assert experiment is not None
     (parent,) = client.search_runs([experiment.experiment_id], "tags.sweep != ''")
     children = client.search_runs(

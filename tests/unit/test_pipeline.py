@@ -14,7 +14,7 @@ STAGES = yaml.safe_load((ROOT / "dvc.yaml").read_text(encoding="utf-8"))["stages
 PLACES = {"preshape": ROOT / "src" / "preshape", "sim": ROOT / "sim", "analysis": ROOT / "analysis"}
 DECIDES_NOTHING = {  # how a run is started, told and kept, not what comes out
     *("composition", "entry_point", "errors", "files", "paths", "progress", "provenance"),
-    *("mlflow_tracking", "setting_values", "sweep_folders", "tracking", "training_job"),
+    *("logged_model", "mlflow_tracking", "setting_values", "sweep_folders", "tracking", "training_job"),
 }
 
 

@@ -1,9 +1,11 @@
 """Tracked runs, in a real MLflow store."""
 
+import multiprocessing
 from pathlib import Path
 
 import pytest
 from mlflow import MlflowClient
+from parallel_runs import log_fold
 
 from preshape.errors import InputError
 from preshape.mlflow_tracking import MlflowTracking, flatten
@@ -66,6 +68,30 @@ def test_a_sweep_is_one_run_with_a_child_of_each_name(tmp_path: Path) -> None:
     fold("fold0", "a", trained=True)  # stays
     fold("fold0", "b")  # other code: replaced
     assert states() == {"sweep": "FINISHED", "fold0": "FINISHED", "fold1": "FINISHED"}
+
+
+def test_twenty_runs_in_parallel_lose_none(tmp_path: Path) -> None:
+    groups, folds = [f"group{number}" for number in range(4)], range(5)
+    jobs = [(tmp_path, group, fold) for fold in folds for group in groups]
+    with multiprocessing.get_context("fork").Pool(10) as pool:  # copies of this process: MLflow is imported
+        pool.starmap(log_fold, jobs, chunksize=1)
+
+    client = MlflowClient(f"sqlite:///{tmp_path / 'mlflow.db'}")
+    experiment = client.get_experiment_by_name("preshape/boxes")
+    assert experiment is not None
+    runs = client.search_runs([experiment.experiment_id])
+    assert {run.info.status for run in runs} == {"FINISHED"}
+    parents = {run.info.run_id: run.info.run_name for run in runs if "sweep" in run.data.tags}
+    assert sorted(parents.values()) == groups
+    children = [run for run in runs if run.info.run_id not in parents]
+    named = {(parents[run.data.tags["mlflow.parentRunId"]], run.info.run_name) for run in children}
+    assert named == {(group, f"fold{fold}") for group in groups for fold in folds}
+    for run in children:
+        steps = [point.step for point in client.get_metric_history(run.info.run_id, "loss")]
+        assert steps == list(range(10))
+        assert len(client.list_artifacts(run.info.run_id)) == 1
+    for run_id in parents:
+        assert len(client.get_metric_history(run_id, "auc_mean")) == len(folds)
 
 
 def test_a_store_that_is_none_is_refused(tmp_path: Path) -> None:

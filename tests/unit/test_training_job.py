@@ -35,7 +35,7 @@ def train_fold(
             "trials": None,
             "trials_learned": None,
         },
-        config={},
+        config={"model": {}},
         unresolved={"model": "tiny", "paths": {"data": str(group)}, **(changes or {})},
         in_sweep=True,
         retrain_after_code_changes=settings.pop("retrain_after_code_changes", True),

@@ -1,0 +1,7 @@
+"""What MLflow runs to load a logged network; a copy of it lies in the folder of the model."""
+
+from mlflow.models import set_model
+
+from preshape.success_predictor import SuccessPredictor
+
+set_model(SuccessPredictor())
