@@ -13,7 +13,7 @@ from preshape.errors import InputError
 from preshape.files import exclusive
 from preshape.logged_model import TrainedModel, log_model, register_model
 from preshape.provenance import command_line
-from preshape.tracking import SweepMember, TrackedRun
+from preshape.tracking import MULTIRUN_TAG, SweepMember, TrackedRun
 
 if TYPE_CHECKING:
     from mlflow import MlflowClient
@@ -26,6 +26,7 @@ PATIENCE_S = 60
 SWEEP_TAG, MEMBER_TAG = "sweep", "identity"
 PARENT_TAG = "mlflow.parentRunId"
 """By this tag MLflow's pages show a run below another."""
+DESCRIPTION_TAG = "mlflow.note.content"
 
 
 class MlflowRun:
@@ -59,6 +60,15 @@ class MlflowRun:
     def keep(self, file: Path) -> None:
         """Keep a copy of a file with the run."""
         self._client.log_artifact(self._run_id, str(file))
+
+    def keep_table(self, rows: Path, table: Path) -> None:
+        """Keep the table of a command with the runs of its sweeps, and show it as their description."""
+        own = self._client.get_run(self._run_id)
+        name = own.data.tags[MULTIRUN_TAG]
+        wanted = f"tags.{MULTIRUN_TAG} = '{name}' and tags.{SWEEP_TAG} != ''"
+        for run in self._client.search_runs([own.info.experiment_id], wanted):
+            self._client.log_artifact(run.info.run_id, str(rows))
+            self._client.set_tag(run.info.run_id, DESCRIPTION_TAG, table.read_text(encoding="utf-8"))
 
     def keep_model(self, model: TrainedModel) -> None:
         """Keep a network for `mlflow.pyfunc.load_model`, and register it unless it is one of a sweep."""
@@ -178,6 +188,7 @@ def _sweep_run(
     if found:
         run_id = str(found[0].info.run_id)
         client.update_run(run_id, status="RUNNING")
+        client.set_tag(run_id, MULTIRUN_TAG, tags.get(MULTIRUN_TAG, ""))
         return run_id
     tags = {**tags, SWEEP_TAG: sweep.digest}
     return str(client.create_run(experiment_id, tags=tags, run_name=sweep.name).info.run_id)

@@ -8,6 +8,9 @@ from typing import Any, Protocol, runtime_checkable
 
 from preshape.logged_model import TrainedModel
 
+MULTIRUN_TAG = "multirun"
+"""Tag of the runs that one command made."""
+
 
 @dataclass(frozen=True)
 class SweepMember:
@@ -49,6 +52,14 @@ class TrackedRun(Protocol):
     def keep(self, file: Path) -> None:
         """Keep a copy of a file with the run."""
 
+    def keep_table(self, rows: Path, table: Path) -> None:
+        """Keep the table of the whole sweep command with all its runs that have runs below them.
+
+        Args:
+            rows: the runs as CSV.
+            table: the table as Markdown.
+        """
+
     def keep_model(self, model: TrainedModel) -> None:
         """Keep a network so that others can use it without knowing how it was trained."""
 
@@ -78,6 +89,9 @@ class UntrackedRun:
 
     def keep(self, file: Path) -> None:
         """Leave the file where it is."""
+
+    def keep_table(self, rows: Path, table: Path) -> None:
+        """Leave it where it is."""
 
     def keep_model(self, model: TrainedModel) -> None:
         """Leave its files where they are."""

@@ -12,9 +12,10 @@ from preshape.evaluation.fold_summary import summarise
 from preshape.files import read_json
 from preshape.logged_model import TrainedModel, seen_parts
 from preshape.models.success_model import GraspNetwork, SuccessModel
-from preshape.provenance import device_name, git_revision
+from preshape.provenance import command_line, device_name, git_revision
+from preshape.run_table import join_table, sweep_folder
 from preshape.source_digest import source_digest
-from preshape.tracking import NoTracking, SweepMember, TrackedRun, Tracking
+from preshape.tracking import MULTIRUN_TAG, NoTracking, SweepMember, TrackedRun, Tracking
 from preshape.training import METRICS_FILE, WEIGHTS_FILE, TrainerSettings, is_first_process, keep_files, train
 
 DECISIVE = (
@@ -80,7 +81,8 @@ class TrainingJob:
             member_digest=_digest(identity),
             trained=self._is_trained(identity),
         )
-        tags = {**_tags(data, settings), "group": group.name}
+        sweep = sweep_folder(group.parent, command_line())
+        tags = {**_tags(data, settings), "group": group.name, MULTIRUN_TAG: sweep.name}
         with tracking.run(self.folder.name, self.config, tags, member) as run:
             if member.trained:
                 outcome = self._had_been_trained(model, data, settings, run)
@@ -88,10 +90,12 @@ class TrainingJob:
                 outcome = train(model, data, settings, self.folder, run, description).metrics.summary()
                 self._keep_model(model, data, run)
             summary = summarise(group, self._decisive(identity))
+            rows, table = join_table(sweep, self.folder)
             if run.parent is not None:
                 run.parent.log(summary.scalars(), summary.folds)
                 for file in summary.files:
                     run.parent.keep(file)
+                run.parent.keep_table(rows, table)
         name = f"{group.name}/{self.folder.name}"
         return f"{name}: {outcome}; weights: {self.folder / WEIGHTS_FILE}; {summary.in_words()}"
 

@@ -111,6 +111,8 @@ def test_a_sweep_from_an_empty_store_can_be_started_again(place: Path) -> None:
     sweep = ("run_name=sweep", "tracking.database=${paths.outputs}/sweep.db", "split=unseen", "fold=0,1")
     begun = run_train(place, "--multirun", "hydra/launcher=joblib", "hydra.launcher.n_jobs=2", *sweep)
     assert begun.returncode == 0, begun.stderr
+    (table,) = (place / "outputs" / "train" / "sweeps").glob("*/runs.md")
+    assert table.read_text() in begun.stdout
     (summary,) = (place / "outputs" / "train").glob("sweep,*/summary.json")
     assert json.loads(summary.read_text())["command"].startswith("python src/train.py --multirun ")
     (summary.parent / "unseen_fold1" / "metrics.json").unlink()
@@ -130,7 +132,8 @@ def test_a_sweep_from_an_empty_store_can_be_started_again(place: Path) -> None:
     areas = [run.data.metrics["test_auc"] for run in children]
     assert parent.data.metrics["unseen_auc_mean"] == pytest.approx(sum(areas) / 2)
     kept = {file.path for file in client.list_artifacts(parent.info.run_id)}
-    assert kept == {"roc_unseen.png", "summary.json"}
+    assert kept == {"roc_unseen.png", "summary.json", "runs.csv"}
+    assert parent.data.tags["mlflow.note.content"] == table.read_text()
 
 
 def test_a_missing_table_is_refused(place: Path) -> None:

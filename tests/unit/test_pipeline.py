@@ -13,8 +13,8 @@ ROOT = Path(__file__).parents[2]
 STAGES = yaml.safe_load((ROOT / "dvc.yaml").read_text(encoding="utf-8"))["stages"]
 PLACES = {"preshape": ROOT / "src" / "preshape", "sim": ROOT / "sim", "analysis": ROOT / "analysis"}
 DECIDES_NOTHING = {  # how a run is started, told and kept, not what comes out
-    *("composition", "entry_point", "errors", "files", "paths", "progress", "provenance"),
-    *("logged_model", "mlflow_tracking", "setting_values", "sweep_folders", "tracking", "training_job"),
+    *("composition", "entry_point", "errors", "files", "logged_model", "mlflow_tracking", "paths"),
+    *("progress", "provenance", "run_table", "setting_values", "sweep_folders", "tracking", "training_job"),
 }
 
 
