@@ -5,19 +5,17 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from preshape.checkpoints import load_weights
 from preshape.data.scene import Scene
 from preshape.data.trial import Face, Trial
 from preshape.errors import InputError
-from preshape.grasps.heuristic import HeuristicSettings
 from preshape.models.success_model import SuccessModel
 from preshape.perception.view_files import save_view
 from preshape.planning.grasp_plan import GraspPlan
+from preshape.planning.grasp_planner import GraspPlanner, GraspPlanning, PlannerParts
 from preshape.planning.plan_files import write_plan
-from preshape.planning.view_planner import ViewPlanner
-from sim.contestants import Contestants, HandContestant, RectangleContestant, RectanglePlanning
 from sim.execution import Spectator
 from sim.finishing import TrialRunning
 from sim.laboratory import Laboratory, trial_seed
@@ -68,7 +66,7 @@ class Evaluator:
     """
 
     laboratory: Laboratory
-    planners: Contestants
+    planners: Mapping[str, GraspPlanner]
     recorder: RecorderSettings
 
 
@@ -94,15 +92,15 @@ class RememberingRunner:
 
 
 PLANNER_PARTS = ("method", "box", "constraint", "prior", "proposer")
-"""What a planner's configuration says of a `ViewPlanner`."""
+"""What a planner's configuration says of `PlannerParts`."""
 
 
 def build_evaluator(
     laboratory: Laboratory,
     planners: Mapping[str, Mapping[str, Any]],
+    planning: GraspPlanning,
     model: SuccessModel,
     weights: str | Path,
-    heuristic: HeuristicSettings,
     recorder: RecorderSettings,
 ) -> Evaluator:
     """The evaluator whose planners all climb one trained network.
@@ -110,59 +108,21 @@ def build_evaluator(
     Args:
         laboratory: scenes, views and trials.
         planners: for each name the parts of a planner (`conf/planner`).
+        planning: what planners of the robot have in common.
         model, weights: the network and its trained weights.
-        heuristic: ranges of the preshape joints, which planners keep to.
         recorder: how trials are filmed.
 
     Raises:
-        InputError: if the weights cannot be used.
+        InputError: if the weights cannot be used, or a planner is for other robots.
     """
     load_weights(weights, model)
-    contestants = {
-        name: HandContestant(
-            ViewPlanner(
-                name=name,
-                space=laboratory.space,
-                heuristic=heuristic,
-                model=model,
-                **{part: parts[part] for part in PLANNER_PARTS if part in parts},
-            )
+    made = {
+        name: planning.planner(
+            PlannerParts(name, **{part: parts[part] for part in PLANNER_PARTS if part in parts}), model
         )
         for name, parts in planners.items()
     }
-    return Evaluator(laboratory, contestants, recorder)
-
-
-class TrainableRectanglePlanning(RectanglePlanning, Protocol):
-    """Plans rectangles with a network that is given later."""
-
-    def with_model(self, model: SuccessModel) -> RectanglePlanning:
-        """The same planner with a trained network."""
-
-
-def build_rectangle_evaluator(
-    laboratory: Laboratory,
-    planners: Mapping[str, TrainableRectanglePlanning],
-    model: SuccessModel,
-    weights: str | Path,
-    recorder: RecorderSettings,
-) -> Evaluator:
-    """The evaluator whose planners of rectangles all climb one trained network.
-
-    Args:
-        laboratory: scenes, views and trials of a gripper.
-        planners: planners by name, which know no network yet.
-        model, weights: the network and its trained weights.
-        recorder: how trials are filmed.
-
-    Raises:
-        InputError: if the weights cannot be used.
-    """
-    load_weights(weights, model)
-    contestants = {
-        name: RectangleContestant(own.with_model(model), laboratory.space) for name, own in planners.items()
-    }
-    return Evaluator(laboratory, contestants, recorder)
+    return Evaluator(laboratory, made, recorder)
 
 
 def try_planners(
@@ -190,7 +150,7 @@ def try_planners(
     runner = RememberingRunner(evaluator.laboratory.runner)
     trials: list[Trial] = []
     for number, (name, planner) in enumerate(evaluator.planners.items()):
-        plan = planner.plan(view)
+        plan = planner.plan_from(view.observation, view.segmented, view.initial)
         write_plan(folder / "plans" / f"{scene.scene_id}_{name}.json", plan)
         trials += _execute(evaluator, runner, settings, scene, plan, number, folder)
     return [replace(trial, rendering_s=seconds / len(trials)) for trial in trials]

@@ -7,6 +7,7 @@ import numpy as np
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
+from preshape.configured_planner import planner_of
 from preshape.drawing.picture_files import save_picture
 from preshape.drawing.plan_picture import plan_picture
 from preshape.entry_point import entry_point
@@ -18,10 +19,8 @@ log = logging.getLogger(__name__)
 
 @entry_point("plan")
 def main(cfg: DictConfig) -> None:
-    """Find the object, make heuristic grasps, plan, and write the grasps as JSON and as a picture."""
-    planner = instantiate(cfg.view_planner)
-    if cfg.weights is not None:
-        planner = planner.with_network(instantiate(cfg.model), cfg.weights)
+    """Find the object, make initial grasps, plan, and write the grasps as JSON and as a picture."""
+    planner = planner_of(cfg)
     observation = load_chosen_view(cfg.view, cfg.rgb_file, cfg.depth_file, cfg.camera_file)
     plan = planner.plan(observation, np.random.default_rng(cfg.seed))
     picture = plan_picture(observation, plan, instantiate(cfg.robot.hand))

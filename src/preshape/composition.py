@@ -24,6 +24,7 @@ def check_composition(cfg: DictConfig) -> None:
     _check_model_fits_robot(cfg)
     _check_dataset_fits_robot(cfg)
     _check_planners_have_a_network(cfg)
+    _check_robot_can_execute(cfg)
 
 
 def missing_keys(content: Any, prefix: str = "") -> Iterator[str]:
@@ -92,6 +93,17 @@ def _check_planners_have_a_network(cfg: DictConfig) -> None:
             where=weights,
             fix=train,
         )
+
+
+def _check_robot_can_execute(cfg: DictConfig) -> None:
+    if "laboratory" not in cfg or "robot" not in cfg or cfg.robot.description is not None:
+        return
+    robot = _choice(cfg, "robot")
+    raise InputError(
+        f"{robot} has no arm, so it cannot execute grasps",
+        where=robot,
+        fix="choose a robot that can be simulated, such as robot=baxter with camera=overhead",
+    )
 
 
 def _planners(cfg: DictConfig) -> Iterator[tuple[str, Any]]:

@@ -5,16 +5,18 @@ from pathlib import Path
 import numpy as np
 from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
+from omegaconf import DictConfig
 
 import preshape.entry_point  # noqa: F401 - registers what the configuration refers to
+from preshape.checkpoints import load_weights
 from preshape.composition import check_composition
 from preshape.paths import project_root
 from preshape.perception.view_choice import load_chosen_view
 from preshape.planning.grasp_plan import GraspPlan
-from preshape.planning.view_planner import ViewPlanner
+from preshape.planning.grasp_planner import GraspPlanner, GraspPlanning
 
 
-def configured_planner(weights: str | Path | None, *choices: str) -> ViewPlanner:
+def configured_planner(weights: str | Path | None, *choices: str) -> GraspPlanner:
     """The planner of `conf/plan.yaml`.
 
     Args:
@@ -28,8 +30,21 @@ def configured_planner(weights: str | Path | None, *choices: str) -> ViewPlanner
         cfg = compose("plan", list(choices))
     cfg.weights = None if weights is None else str(weights)
     check_composition(cfg)
-    planner: ViewPlanner = instantiate(cfg.view_planner)
-    return planner if cfg.weights is None else planner.with_network(instantiate(cfg.model), cfg.weights)
+    return planner_of(cfg)
+
+
+def planner_of(cfg: DictConfig) -> GraspPlanner:
+    """The planner of a composed `conf/plan.yaml`.
+
+    Raises:
+        InputError: if the weights cannot be used, or the planner is for other robots.
+    """
+    model = None
+    if cfg.weights is not None:
+        model = instantiate(cfg.model)
+        load_weights(cfg.weights, model)
+    planning: GraspPlanning = instantiate(cfg.planning)
+    return planning.planner(instantiate(cfg.planner_parts), model)
 
 
 def plan_view(view: str | Path, weights: str | Path | None, *choices: str, seed: int = 0) -> GraspPlan:

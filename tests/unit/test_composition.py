@@ -53,6 +53,14 @@ def test_trials_of_another_robot_are_refused() -> None:
     assert "robot=lbr4_allegro" in refusal.value.where
 
 
+def test_a_robot_without_an_arm_executes_nothing() -> None:
+    armless = {"name": "two_finger", "description": None}
+    check(robot=armless)
+    with pytest.raises(InputError, match="robot=two_finger has no arm") as refusal:
+        check(robot=armless, laboratory={"space": None})
+    assert "robot=baxter" in refusal.value.fix
+
+
 @pytest.mark.parametrize("parts", [{"planner": CLIMBING}, {"planners": {"inference": CLIMBING}}])
 def test_climbing_needs_a_network(parts: dict[str, Any], tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"inference climbs .* weights is not set"):

@@ -22,6 +22,9 @@ from preshape.paths import project_root
         ("train", "seen", "dataset.data.hold_out.split", "scenes"),
         ("evaluate", "planning", "evaluate.poses_per_object", 20),
         ("evaluate", "planning", "run_name", "planning_seen"),
+        ("train", "two_finger_unseen", "dataset.data.hold_out.split", "objects"),
+        ("train", "two_finger_unseen", "learning.settings.iterations", 600),
+        ("evaluate", "two_finger", "planners.inference.name", "rectangle_inference"),
         ("evaluate", "demo_planning", "run_name", "demo"),
         ("evaluate", "demo_planning", "evaluate.filmed_scenes", 6),
     ],
@@ -30,3 +33,12 @@ def test_an_experiment_has_the_last_word(command: str, experiment: str, key: str
     with initialize_config_dir(str(project_root() / "conf"), version_base="1.3"):
         cfg = compose(command, [f"experiment={experiment}"])
     assert OmegaConf.select(cfg, key) == value
+
+
+def test_the_gripper_is_evaluated_on_objects_that_its_network_has_not_seen() -> None:
+    with initialize_config_dir(str(project_root() / "conf"), version_base="1.3"):
+        held_out = set(compose("train", ["experiment=two_finger_unseen"]).dataset.data.hold_out.objects)
+        for chosen in ([], ["condition=tall", "objects=grocery"]):
+            cfg = compose("evaluate", ["experiment=two_finger", *chosen])
+            assert len(set(cfg.laboratory.scenes.only)) == 10
+            assert set(cfg.laboratory.scenes.only) <= held_out

@@ -7,6 +7,8 @@ from preshape.geometry.camera import Camera
 
 WIDTH_M = 0.5
 """Width of the window at the distance of the palms: room for the object and a hand on either side."""
+MARGIN_PX = 80.0
+"""Room around rectangles."""
 ASPECT = 4 / 3
 """Width over height."""
 
@@ -17,6 +19,14 @@ def grasp_window(camera: Camera, theta: Float[np.ndarray, "s d"]) -> tuple[slice
     u, v = camera.project(palm)
     width = camera.fx * WIDTH_M / palm[2]
     return _interval(v, width / ASPECT, camera.height), _interval(u, width, camera.width)
+
+
+def rectangle_window(camera: Camera, theta: Float[np.ndarray, "s 4"]) -> tuple[slice, slice]:
+    """Rows and columns of the view around rectangles (u, v, angle, opening); never outside of the view."""
+    centre = theta[:, :2].mean(axis=0)
+    reach = float((np.abs(theta[:, :2] - centre).max(axis=1) + theta[:, 3]).max()) + MARGIN_PX
+    u, v = centre
+    return _interval(v, 2 * reach / ASPECT, camera.height), _interval(u, 2 * reach, camera.width)
 
 
 def cut(

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from preshape.data.trial import Face
+from preshape.grasps.rectangle_pose import JawPose
 from preshape.grasps.space import GraspSpace
 from preshape.planning.result import PlanResult
 
@@ -18,10 +19,11 @@ class GraspPlan:
         planner: name of the planner.
         space: grasp space of theta.
         faces: face of the bounding box that each start aimed at; decides how the hand closes.
-        result: the grasps, with palm poses in the camera frame.
+        result: the grasps: palm poses in the camera frame with joints, or rectangles in the image.
         T_world_camera: pose of the camera.
         T_table_camera: pose of the camera over the table that it sees: z up from the table's top, the origin
             under the camera, x along the image's right.
+        jaws: where rectangles put the gripper, one for each; empty for palm poses, which say it themselves.
     """
 
     planner: str
@@ -30,9 +32,12 @@ class GraspPlan:
     result: PlanResult
     T_world_camera: Float[np.ndarray, "4 4"]
     T_table_camera: Float[np.ndarray, "4 4"]
+    jaws: tuple[JawPose, ...] = ()
 
     def palm_pose(self, start: int) -> Float[np.ndarray, "4 4"]:
         """T_camera_palm of a planned grasp."""
+        if self.jaws:
+            return self.jaws[start].T_camera_jaws
         return self.space.palm_pose(self.result.theta[start])
 
     def palm_pose_in_world(self, start: int) -> Float[np.ndarray, "4 4"]:

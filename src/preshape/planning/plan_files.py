@@ -9,6 +9,7 @@ from jaxtyping import Float64
 from preshape.data.trial import Face
 from preshape.errors import InputError
 from preshape.files import read_json, write_json
+from preshape.grasps.rectangle_pose import JawPose
 from preshape.grasps.space import GraspSpace
 from preshape.planning.grasp_plan import GraspPlan
 from preshape.planning.result import PlanResult, PlanStatus
@@ -81,7 +82,8 @@ def _grasp(plan: GraspPlan, start: int) -> dict[str, Any]:
         "grasp_type": plan.faces[start].grasp_type.value,
         "status": result.status[start].value,
         **{name: getattr(result, name)[start] for name in SCALARS},
-        **(_palm_poses(plan, start) if space.frame == "camera" else {}),
+        **_palm_poses(plan, start),
+        **(_opening(plan.jaws[start]) if plan.jaws else {}),
         "joints": dict(zip(space.joint_names, space.joints(theta).tolist(), strict=True)),
         **{name: getattr(result, name)[start] for name in THETAS},
         "climb": result.climb[start],
@@ -89,12 +91,22 @@ def _grasp(plan: GraspPlan, start: int) -> dict[str, Any]:
 
 
 def _palm_poses(plan: GraspPlan, start: int) -> dict[str, Any]:
-    """Where the palm is to be; a rectangle in an image does not say that by itself."""
+    """Where the palm is to be."""
     return {
         "T_camera_palm": plan.palm_pose(start),
         "T_table_palm": plan.palm_pose_over_table(start),
         "T_world_palm": plan.palm_pose_in_world(start),
     }
+
+
+def _opening(jaws: JawPose) -> dict[str, float]:
+    """What else a gripper is told at a rectangle."""
+    return {"opening_m": jaws.opening_m, "advance_m": jaws.advance_m}
+
+
+def _jaws(grasp: dict[str, Any]) -> JawPose:
+    pose = _numbers(grasp["T_camera_palm"]).reshape(4, 4)
+    return JawPose(pose, float(grasp["opening_m"]), float(grasp["advance_m"]))
 
 
 def _plan(content: dict[str, Any], space: GraspSpace) -> GraspPlan:
@@ -124,6 +136,7 @@ def _plan(content: dict[str, Any], space: GraspSpace) -> GraspPlan:
         result=result,
         T_world_camera=_numbers(content["T_world_camera"]).reshape(4, 4),
         T_table_camera=_numbers(content["T_table_camera"]).reshape(4, 4),
+        jaws=() if space.frame == "camera" else tuple(map(_jaws, by_start)),
     )
 
 

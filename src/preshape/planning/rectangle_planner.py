@@ -1,21 +1,31 @@
 """From an RGB-D view to a ranked grasp of a two-finger gripper (paper, section 4.4)."""
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import torch
-from jaxtyping import Float64
+from jaxtyping import Float, Float64
 
-from preshape.cornell.object_finder import FinderSettings
+from preshape.cornell.layout import HEIGHT, WIDTH
+from preshape.cornell.object_finder import FinderSettings, centre_of, find_object
 from preshape.cornell.rectangle import GraspRectangle
 from preshape.cornell.rectangle_views import RectangleViewSettings, rectangle_image, rectangle_view
+from preshape.data.trial import Face
+from preshape.errors import InputError
+from preshape.geometry.pose import pose_over_plane
+from preshape.grasps.heuristic import InitialGrasp
+from preshape.grasps.rectangle_pose import RectanglePoseSettings, jaw_pose
 from preshape.grasps.rectangle_space import JAW_PX, rectangle_of
 from preshape.grasps.space import GraspSpace
 from preshape.models.success_model import SuccessModel
 from preshape.perception.observation import Observation
+from preshape.perception.segmentation import SegmentedObject
+from preshape.perception.table import TableSettings, find_table
 from preshape.perception.view_batch import ViewBatch
 from preshape.planning.bounds import Bounds, RectangleBox
+from preshape.planning.grasp_plan import GraspPlan
 from preshape.planning.objective import Objective, SuccessObjective, UnknownSuccess
 from preshape.planning.planner import Planner
 from preshape.planning.result import PlanResult
@@ -46,7 +56,7 @@ class RectangleStarts:
 
 @dataclass(frozen=True, eq=False)
 class RectanglePlan:
-    """What a planner found in one view.
+    """What a planner found in one view, in the image alone.
 
     Args:
         planner: name of the planner.
@@ -86,6 +96,7 @@ class RectanglePlanner:
         finder: how the object is found.
         model: a trained network that judges rectangles; None if nothing is known about them.
         jaw_px: width of the jaws.
+        pose: how the gripper is put at a rectangle.
     """
 
     name: str
@@ -97,15 +108,47 @@ class RectanglePlanner:
     finder: FinderSettings
     model: SuccessModel | None = None
     jaw_px: float = JAW_PX
+    pose: RectanglePoseSettings = field(default_factory=RectanglePoseSettings)
 
     def with_model(self, model: SuccessModel, method: Planner | None = None) -> "RectanglePlanner":
         """The same planner with a trained network, and perhaps another method."""
         return replace(self, model=model, method=method or self.method)
 
-    def plan_from(self, observation: Observation, initial: Float64[np.ndarray, "s 4"]) -> RectanglePlan:
-        """Plan from initial rectangles, so that planners can be compared."""
+    def plan(self, observation: Observation, rng: np.random.Generator) -> GraspPlan:
+        """Plan from initial rectangles at the centre of the object.
+
+        Raises:
+            InputError: if the image has another size than the grasp space, or no object can be made out.
+        """
+        size = observation.depth.shape
+        if size != (HEIGHT, WIDTH):
+            raise InputError(
+                f"The image has {size[1]} x {size[0]} pixels",
+                where="view",
+                fix=f"crop or scale it to {WIDTH} x {HEIGHT}, and its camera file, too",
+            )
+        initial = self.starts.around(centre_of(find_object(observation, self.finder)), rng)
+        points = observation.camera.unproject(observation.depth.astype(np.float64))
+        up = observation.camera.T_world_camera[2, :3]
+        return self._plan_on(observation, find_table(points, up, TableSettings()).plane, initial)
+
+    def plan_from(
+        self, observation: Observation, segmented: SegmentedObject, initial: Sequence[InitialGrasp]
+    ) -> GraspPlan:
+        """Plan from initial rectangles that are there already, so that planners can be compared."""
+        return self._plan_on(observation, segmented.plane, np.stack([grasp.theta for grasp in initial]))
+
+    def _plan_on(
+        self, observation: Observation, table: Float[np.ndarray, "4"], initial: Float64[np.ndarray, "s 4"]
+    ) -> GraspPlan:
         image = torch.from_numpy(rectangle_image(observation, self.views))[None]
-        return self.plan_in(rectangle_view(image, self.views.step_px), initial)
+        plan = self.plan_in(rectangle_view(image, self.views.step_px), initial)
+        jaws = tuple(
+            jaw_pose(plan.rectangle(start), observation, table, self.pose) for start in range(len(initial))
+        )
+        faces = (Face.TOP,) * len(initial)
+        poses = observation.camera.T_world_camera, pose_over_plane(table)
+        return GraspPlan(self.name, self.space, faces, plan.result, *poses, jaws)
 
     def plan_in(self, view: ViewBatch, initial: Float64[np.ndarray, "s 4"]) -> RectanglePlan:
         """Plan in a view that has been made before."""

@@ -1,13 +1,11 @@
 """From an RGB-D view to ranked grasps."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-from pathlib import Path
+from dataclasses import dataclass, field
 
 import numpy as np
 import torch
 
-from preshape.checkpoints import load_weights
 from preshape.errors import InputError
 from preshape.geometry.pose import pose_over_plane
 from preshape.grasps.heuristic import HeuristicSettings, InitialGrasp, heuristic_grasps
@@ -53,15 +51,6 @@ class ViewPlanner:
     prior: PriorChoice = field(default_factory=PriorChoice)
     proposer: RegressedGrasp | None = None
     segmentation: SegmentationSettings = field(default_factory=SegmentationSettings)
-
-    def with_network(self, model: GraspNetwork, weights: str | Path) -> "ViewPlanner":
-        """The same planner with a network, into which trained weights are read.
-
-        Raises:
-            InputError: if the weights cannot be used.
-        """
-        load_weights(weights, model)
-        return replace(self, model=model)
 
     def plan(self, observation: Observation, rng: np.random.Generator) -> GraspPlan:
         """Plan from heuristic initial grasps.

@@ -8,8 +8,9 @@ import pytest
 import torch
 from PIL import Image
 
+from preshape.drawing.canvas import INITIAL_STYLE, PLANNED_STYLE
 from preshape.drawing.channel_grid import channel_grid
-from preshape.drawing.grasp_overlay import INITIAL_STYLE, PLANNED_STYLE, grasp_overlay
+from preshape.drawing.grasp_overlay import grasp_overlay
 from preshape.drawing.picture_files import save_picture
 from preshape.errors import InputError
 from preshape.geometry.pose import invert_pose, make_pose

@@ -1,14 +1,16 @@
 """Rectangles executed by the gripper, and the folder in Cornell's layout that is made of them."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import torch
 from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 
 import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
+from preshape.checkpoints import save_weights
 from preshape.cornell.data_set import read_cornell
 from preshape.cornell.rectangle_metric import jaccard
 from preshape.cornell.views import load_cornell_view
@@ -20,13 +22,7 @@ from preshape.errors import InputError
 from preshape.geometry.pose import make_pose
 from preshape.grasps.rectangle_space import rectangle_of
 from preshape.paths import project_root
-from preshape.perception.observation import Observation
-from preshape.planning.bounds import Bounds
-from preshape.planning.heuristic import HeuristicPlanner
-from preshape.planning.objective import UnknownSuccess
 from preshape.planning.plan_files import read_plan
-from preshape.planning.result import PlanResult
-from sim.contestants import RectangleContestant
 from sim.laboratory import Laboratory
 from sim.planner_contest import EvaluationSettings, Evaluator, try_planners
 from sim.recorder import Recorder, RecorderSettings
@@ -114,26 +110,51 @@ def test_proposed_rectangles_lie_where_they_should(laboratory: Laboratory, scene
     assert TrialOutcome.LIFTED in {trial.outcome for trial in aligned}
 
 
-@dataclass(frozen=True)
-class AsTheyAre:
-    """Plans what it is given."""
+@pytest.fixture(scope="module")
+def evaluator(laboratory: Laboratory, tmp_path_factory: pytest.TempPathFactory) -> Evaluator:
+    """The paper's experiment, with a network that has learned nothing."""
+    place = tmp_path_factory.mktemp("experiment")
+    weights = place / "model.safetensors"
+    overrides = ["experiment=two_finger", f"paths.cache={place}", f"weights={weights}"]
+    with initialize_config_dir(str(project_root() / "conf"), version_base="1.3"):
+        cfg = compose("evaluate", overrides)
+    torch.manual_seed(0)
+    save_weights(weights, instantiate(cfg.model), data_hash="none", git_revision="none", metrics={})
+    cfg.evaluator.laboratory = None
+    return replace(instantiate(cfg.evaluator), laboratory=laboratory)
 
-    result: PlanResult | None = None
-    planner: str = "initial"
 
-    def plan_from(self, observation: Observation, initial: np.ndarray) -> "AsTheyAre":
-        bounds = Bounds(initial - 1.0, initial + 1.0)
-        return AsTheyAre(HeuristicPlanner().plan(UnknownSuccess(), initial, bounds))
-
-
-def test_planners_of_rectangles_compete(laboratory: Laboratory, scene: Scene, tmp_path: Path) -> None:
-    contestants = {name: RectangleContestant(AsTheyAre(), laboratory.space) for name in ("initial", "other")}
-    settings = EvaluationSettings(scenes=1, seed=1, every_grasp_of=("initial",))
-    evaluator = Evaluator(laboratory, contestants, RecorderSettings())
+def test_planners_of_rectangles_compete(evaluator: Evaluator, scene: Scene, tmp_path: Path) -> None:
+    settings = EvaluationSettings(scenes=1, seed=1)
     tried = try_planners(evaluator, settings, scene, tmp_path)
-    assert len({trial.trial_id for trial in tried}) == 2 * len(laboratory.view(scene).initial)
-    plan = read_plan(tmp_path / "plans" / "0_other.json", laboratory.space)
-    np.testing.assert_array_equal(plan.result.theta, [trial.planned for trial in tried[:4]])
+    own = {name: [trial for trial in tried if trial.planner == name] for name in evaluator.planners}
+    assert list(own) == ["heuristic", "max_eval", "inference"]
+    assert len(own["heuristic"]) == 4
+    np.testing.assert_array_equal(own["max_eval"][0].planned, own["max_eval"][0].initial)
+    best = own["inference"][0]
+    assert best.success_prob >= max(trial.success_prob for trial in own["heuristic"])
+    plan = read_plan(tmp_path / "plans" / "0_inference.json", evaluator.laboratory.space)
+    np.testing.assert_array_equal(plan.result.theta[plan.result.best], best.planned)
+    # what the plan says in metres is where the robot takes the gripper
+    placed = evaluator.laboratory.runner.meaning.place(
+        scene, best.planned, evaluator.laboratory.runner.table, evaluator.laboratory.runner.look
+    )
+    approach = placed.T_world_palm[:3, 0]
+    np.testing.assert_allclose(plan.palm_pose_in_world(plan.result.best)[:3, 0], approach, atol=0.02)
+    np.testing.assert_allclose(
+        plan.palm_pose_in_world(plan.result.best)[:3, 3], placed.T_world_palm[:3, 3], atol=0.005
+    )
+
+
+def test_planners_for_hands_are_refused(laboratory: Laboratory) -> None:
+    with initialize_config_dir(str(project_root() / "conf"), version_base="1.3"):
+        for_hands = compose("plan", ["robot=baxter", "planner=inference", "paths.cache=unused"])
+        for_grippers = compose("plan", ["planner=paper_rectangle", "paths.cache=unused"])
+    for cfg, fix in ((for_hands, "planner=paper_rectangle"), (for_grippers, "planner=inference")):
+        cfg.planner_parts.constraint = None
+        with pytest.raises(InputError, match="not for") as refusal:
+            instantiate(cfg.planning).planner(instantiate(cfg.planner_parts))
+        assert fix in str(refusal.value)
 
 
 def test_executed_rectangles_become_a_data_set_in_cornells_layout(
