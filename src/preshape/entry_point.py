@@ -56,11 +56,14 @@ def entry_point(config_name: str) -> Callable[[Callable[[DictConfig], None]], Ca
             except (ConfigCompositionException, OverrideParseException) as error:
                 _refuse(_misuse(error))
             except OSError as error:
-                if begun or error.filename is None:
+                refusal = bad_input_behind(error)
+                if not begun and error.filename is not None:
+                    problem = f"The folder of the run cannot be made: {error.strerror}"
+                    fix = "choose another place with paths.outputs=DIR"
+                    refusal = InputError(problem, where=error.filename, fix=fix)
+                if refusal is None:
                     raise
-                problem = f"The folder of the run cannot be made: {error.strerror}"
-                fix = "choose another place with paths.outputs=DIR"
-                _refuse(str(InputError(problem, where=error.filename, fix=fix)))
+                _refuse(str(refusal))
             except (KeyboardInterrupt, SystemExit) as end:
                 # Lightning answers an interrupt with an exit of its own
                 if isinstance(end, SystemExit) and not isinstance(end.__context__, KeyboardInterrupt):

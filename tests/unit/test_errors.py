@@ -1,8 +1,12 @@
 """Bad input is said completely, also out of a worker process."""
 
+import errno
+import os
 from copy import copy
 
-from preshape.errors import InputError
+import pytest
+
+from preshape.errors import InputError, bad_input_behind
 
 
 def test_message_says_what_where_and_fix() -> None:
@@ -24,3 +28,23 @@ def test_error_survives_the_way_between_processes() -> None:
         error.fix,
         str(error),
     )
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS, errno.EACCES])
+def test_what_the_machine_refuses_is_the_users_to_mend(number: int) -> None:
+    for error in (OSError(number, "", "a/b"), wrapped(OSError(number, ""))):
+        refusal = bad_input_behind(error)
+        assert refusal is not None
+        assert os.strerror(number) in refusal.what
+        assert "another place" in refusal.fix
+
+
+def test_other_errors_of_the_machine_are_defects() -> None:
+    assert bad_input_behind(FileNotFoundError(errno.ENOENT, "", "a/b")) is None
+
+
+def wrapped(error: Exception) -> Exception:
+    try:
+        raise RuntimeError from error
+    except RuntimeError as outer:
+        return outer

@@ -1,0 +1,129 @@
+"""Good and bad input for every command, made once in a folder."""
+
+import json
+import os
+import pickle
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import torch
+import trimesh
+from synthetic_cornell import write_cornell
+from synthetic_evaluation import write_evaluation
+from synthetic_scenes import BoxRenderer, allegro_space, make_scene, write_data_set
+
+from preshape.checkpoints import save_weights
+from preshape.files import write_json
+from preshape.models.config_cnn import ConfigCNN
+from preshape.models.palm_points import PalmPoints
+from preshape.perception.view_files import save_view
+from preshape.planning.mixture_density_network import MixtureDensityNetwork
+from preshape.planning.prior import GraspPrior
+
+DAMAGES = ("missing", "a folder", "empty", "cut off", "noise", "a pickle", "another kind")
+
+
+class Payload:
+    """An object whose pickle makes a file when it is loaded."""
+
+    def __init__(self, mark: Path) -> None:
+        self._mark = mark
+
+    def __reduce__(self) -> tuple[Callable[[str], int], tuple[str]]:
+        return os.system, (f"touch {self._mark}",)
+
+
+def make_inputs(place: Path) -> None:
+    """Write the good inputs: view, depth, weights, tables, priors, evaluation, meshes, Cornell, results."""
+    torch.manual_seed(0)
+    space = allegro_space()
+    view = BoxRenderer()(make_scene(0))
+    save_view(place / "view", view)
+    np.save(place / "depth.npy", view.depth)
+    for name, network in (
+        ("palm_points", PalmPoints("palm_points", space.name, space.dim)),
+        ("config_cnn", ConfigCNN("config_cnn", space.name, space.dim)),
+    ):
+        save_weights(
+            place / f"{name}.safetensors", network, data_hash="none", git_revision="none", metrics={}
+        )
+    write_data_set(place / "table", 15)
+    _write_priors(place)
+    write_evaluation(place / "evaluation", 3)
+    write_json(
+        place / "metrics.json", {"auc": {"value": 0.8, "low": 0.7, "high": 0.9}, "n": 9, "positives": 3}
+    )
+    write_cornell(place / "cornell", n=5, cloud=True)
+    (place / "meshes").mkdir()
+    trimesh.creation.box((0.05, 0.06, 0.1)).export(place / "meshes" / "box.obj")
+    (place / "grocery.csv").write_text("name,family\nbox_0,box\n")
+
+
+def _write_priors(place: Path) -> None:
+    features = 9 + 8
+    prior = GraspPrior(
+        "allegro_palm14",
+        torch.zeros(1, dtype=torch.float64),
+        torch.zeros(1, features, dtype=torch.float64),
+        torch.eye(features, dtype=torch.float64)[None],
+    )
+    prior.write(place / "prior.json")
+    network = MixtureDensityNetwork.beginning_with(prior, torch.Generator().manual_seed(0))
+    network.write(place / "prior.safetensors")
+
+
+def damaged(good: Path, how: str, place: Path, mark: Path) -> Path:
+    """A damaged copy in `place` of a file, or of a folder whose largest file is damaged.
+
+    Args:
+        good: what is copied.
+        how: one of `DAMAGES`.
+        place: a folder that is made for it.
+        mark: the file that a pickle makes when it is executed.
+    """
+    place.mkdir(parents=True)
+    if good.is_dir():
+        copy = place / good.name
+        shutil.copytree(good, copy)
+        largest = max(
+            (path for path in copy.rglob("*") if path.is_file()), key=lambda path: path.stat().st_size
+        )
+        _damage(largest, how, mark)
+        return copy
+    for path in (good, good.with_name(f"{good.name}.json")):  # a sidecar goes with its weights
+        if path.is_file():
+            shutil.copy(path, place)
+    _damage(place / good.name, how, mark)
+    return place / good.name
+
+
+def _damage(path: Path, how: str, mark: Path) -> None:
+    content = path.read_bytes()
+    path.unlink()
+    if how == "a folder":
+        path.mkdir()
+    elif how == "empty":
+        path.touch()
+    elif how == "cut off":
+        path.write_bytes(content[: len(content) // 2])
+    elif how == "noise":
+        path.write_bytes(np.random.default_rng(0).bytes(len(content)))
+    elif how == "a pickle":
+        path.write_bytes(pickle.dumps(Payload(mark)))
+    elif how == "another kind":
+        _another_kind(path)
+
+
+def _another_kind(path: Path) -> None:
+    if path.suffix == ".json":
+        path.write_text(json.dumps({"_target_": "os.system", "command": "true"}))
+    elif path.suffix == ".parquet":
+        pq.write_table(pa.table({"x": [1, 2]}), path)
+    elif path.suffix == ".npy":
+        np.save(path, np.zeros(3))
+    else:
+        path.write_text("name,value\none,2\n")
