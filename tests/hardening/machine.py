@@ -42,10 +42,11 @@ def main() -> None:
             place.mkdir()
         make_inputs(inputs)
         commands = Commands(inputs, work)
-        chosen = (
-            own for own in situations(commands) if not texts or any(text in str(own[0]) for text in texts)
-        )
-        outcomes = [run_in(situation, case, inputs, work) for case, situation in chosen]
+        outcomes = [
+            run_in(left_kb, case, inputs, work)
+            for case, left_kb in situations(commands)
+            if not texts or any(text in str(case) for text in texts)
+        ]
     log.info("%s", table(outcomes))
     sys.exit(any(outcome.faults for outcome in outcomes))
 
@@ -162,13 +163,8 @@ def unreadable_cases(commands: Commands, secret: Path) -> Iterator[Case]:
         ("src/plan.py", plan, "depth_file", inputs / "depth.npy"),
         ("src/plan.py", plan, "camera_file", inputs / "view" / "camera.json"),
         ("src/plan.py", plan, "weights", inputs / "palm_points.safetensors"),
-        ("src/plan.py", (*plan, "planner.prior.weight=1"), "planner.prior.file", inputs / "prior.json"),
-        (
-            "src/plan.py",
-            (*plan, "planner.prior.weight=1"),
-            "planner.prior.file",
-            inputs / "prior.safetensors",
-        ),
+        ("src/plan.py", with_prior, "planner.prior.file", inputs / "prior.json"),
+        ("src/plan.py", with_prior, "planner.prior.file", inputs / "prior.safetensors"),
         ("src/export.py", commands.usual["src/export.py"], "weights", inputs / "config_cnn.safetensors"),
         ("src/train.py", commands.usual["src/train.py"], "dataset.data.folder", inputs / "table"),
         ("sim/replay.py", commands.usual["sim/replay.py"], "table", inputs / "table"),

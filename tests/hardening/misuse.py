@@ -138,7 +138,7 @@ def run_here(action: Callable[[], None], messages: Path, limit_s: float) -> tupl
     pid = os.fork()
     if pid == 0:
         os.setsid()
-        _become(action, messages)
+        become(action, messages)
     end = time.monotonic() + limit_s
     status = None
     while status is None and time.monotonic() < end:
@@ -151,7 +151,7 @@ def run_here(action: Callable[[], None], messages: Path, limit_s: float) -> tupl
     return status, messages.read_text(errors="replace")
 
 
-def _become(action: Callable[[], None], messages: Path) -> None:
+def become(action: Callable[[], None], messages: Path) -> None:
     """End this process as Python ends one that does just this."""
     status = 1
     try:
@@ -167,6 +167,9 @@ def _become(action: Callable[[], None], messages: Path) -> None:
         if isinstance(end.code, str):
             sys.stderr.write(f"{end.code}\n")
         status = 0 if end.code is None else end.code if isinstance(end.code, int) else 1
+    except KeyboardInterrupt:  # Python ends itself with the signal then
+        traceback.print_exc()
+        status = 130
     except BaseException:
         traceback.print_exc()
     finally:

@@ -27,9 +27,9 @@ from preshape.planning.prior_choice import PriorChoice, read_prior
 from preshape.planning.prior_fitting import MixtureFit, NetworkFit
 
 SPACE = GraspSpace.palm_and_joints("test", {f"joint_{k}": (-0.5, 0.5) for k in range(2)})
-PLANNER = GradientAscent(LineSearch(0.25, growth=2.0, max_step=1.0), tolerance=1e-9, patience=20)
+PLANNER = GradientAscent(LineSearch(0.25, growth=2.0, max_step=1.0), tolerance=1e-5, patience=5)
 FIT = NetworkFit(
-    components=2, iterations=100, batch_size=32, learning_rate=1e-2, weight_decay=1e-2, check_every=25, seed=0
+    components=2, iterations=50, batch_size=32, learning_rate=2e-2, weight_decay=1e-2, check_every=25, seed=0
 )
 ON_TOP = Rotation.from_euler("y", 90, degrees=True).as_matrix()
 

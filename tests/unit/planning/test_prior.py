@@ -20,7 +20,7 @@ from preshape.planning.prior import GraspPrior, PriorObjective
 from preshape.planning.prior_choice import PriorChoice
 
 SPACE = GraspSpace.palm_and_joints("test", {f"joint_{k}": (-0.5, 0.5) for k in range(2)})
-PLANNER = GradientAscent(LineSearch(0.25, growth=2.0, max_step=1.0), tolerance=1e-9, patience=20)
+PLANNER = GradientAscent(LineSearch(0.25, growth=2.0, max_step=1.0), tolerance=1e-5, patience=5)
 
 
 def pose(seed: int) -> np.ndarray:

@@ -1,0 +1,283 @@
+"""Interrupt and kill commands at random moments, start them again, two at a time, elsewhere in the world.
+
+`python tests/hardening/interruptions.py [TEXT ...]` counts what happens; with texts, only commands whose name
+holds one of them. What a command ends with must be what it ends with undisturbed.
+"""
+
+import hashlib
+import json
+import logging
+import os
+import signal
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet as pq
+from PIL import Image
+
+ROOT = Path(__file__).parents[2]
+sys.path[:0] = [str(ROOT / "tests" / "fixtures")]
+
+from cases import Case, Commands  # noqa: E402
+from misuse import LIBRARIES, become, run_script  # noqa: E402
+from places import make_inputs  # noqa: E402
+
+INTERRUPTED = 130
+ROUNDS = 5
+"""So often each command is stopped with each signal."""
+UNEQUAL = ("runtime_s", "date", "command", "git_revision", "versions", "seconds")
+"""What differs between any two runs."""
+ELSEWHERE = {"TZ": "Asia/Kathmandu", "LC_ALL": "C", "PYTHONUTF8": "0"}
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Job:
+    """A command that can be started again.
+
+    Args:
+        name: for the table.
+        case: the command.
+        results: the files that it ends with, below the folder of the work.
+    """
+
+    name: str
+    case: Case
+    results: tuple[str, ...]
+
+
+@dataclass
+class Count:
+    """What happened to a command."""
+
+    interrupted: int = 0
+    killed: int = 0
+    ended_before: int = 0
+    pairs: int = 0
+    elsewhere: int = 0
+    faults: list[str] = field(default_factory=list)
+
+
+def main() -> None:
+    """Stop every command, and write a table."""
+    logging.basicConfig(format="%(message)s", level=logging.INFO, stream=sys.stdout)
+    for library in LIBRARIES:
+        import_module(library)
+    texts = sys.argv[1:]
+    counts = {}
+    with tempfile.TemporaryDirectory(prefix="interruptions") as folder:
+        inputs = Path(folder) / "inputs"
+        inputs.mkdir()
+        make_inputs(inputs)
+        for name in JOBS:
+            if not texts or any(text in name for text in texts):
+                counts[name] = disturb(name, inputs, Path(folder) / name)
+    log.info("| command | interrupted | killed | ended before | two at once | elsewhere | wrong |")
+    log.info("|---|---:|---:|---:|---:|---:|---|")
+    for name, count in counts.items():
+        numbers = (count.interrupted, count.killed, count.ended_before, count.pairs, count.elsewhere)
+        log.info(
+            "| %s | %s | %s |", name, " | ".join(map(str, numbers)), "; ".join(count.faults) or "nothing"
+        )
+    sys.exit(any(count.faults for count in counts.values()))
+
+
+JOBS: dict[str, Callable[[Path, Path], Job]] = {}
+
+
+def job(name: str) -> Callable[[Callable[[Commands], tuple[Case, tuple[str, ...]]]], None]:
+    """Name a function that makes a command and the files that it ends with."""
+
+    def keep(make: Callable[[Commands], tuple[Case, tuple[str, ...]]]) -> None:
+        JOBS[name] = lambda inputs, work: Job(name, *make(Commands(inputs, work)))
+
+    return keep
+
+
+@job("train")
+def _train(commands: Commands) -> tuple[Case, tuple[str, ...]]:
+    longer = ("learning.settings.iterations=60", "trainer.batches_per_epoch=6")
+    folder = "outputs/train/palm_points"
+    files = (
+        "model.safetensors",
+        "model.safetensors.json",
+        "metrics.json",
+        "curves.json",
+        "predictions.parquet",
+    )
+    case = Case("", "src/train.py", (*commands.usual["src/train.py"], *longer))
+    return case, tuple(f"{folder}/{name}" for name in files)
+
+
+@job("plan")
+def _plan(commands: Commands) -> tuple[Case, tuple[str, ...]]:
+    output = f"output={commands.work / 'plan'}"
+    case = Case("", "src/plan.py", (*commands.usual["src/plan.py"], output))
+    return case, ("plan/grasps.json", "plan/grasps.png")
+
+
+@job("fit_prior")
+def _fit_prior(commands: Commands) -> tuple[Case, tuple[str, ...]]:
+    output = f"output={commands.work / 'prior.json'}"
+    return Case("", "src/fit_prior.py", (*commands.usual["src/fit_prior.py"], output)), ("prior.json",)
+
+
+@job("export")
+def _export(commands: Commands) -> tuple[Case, tuple[str, ...]]:
+    output = f"output={commands.work / 'network.onnx'}"
+    return Case("", "src/export.py", (*commands.usual["src/export.py"], output)), ("network.onnx",)
+
+
+@job("report of a data set")
+def _dataset(commands: Commands) -> tuple[Case, tuple[str, ...]]:
+    inputs = commands.inputs
+    given = {"data": inputs / "table", "families": inputs / "grocery.csv"}
+    arguments = commands.report("dataset", **given, sensitivity="null", label_check="null")
+    return Case("", "analysis/report.py", arguments), ("report/output",)
+
+
+@job("collect")
+def _collect(commands: Commands) -> tuple[Case, tuple[str, ...]]:
+    output = f"collect.output={commands.work / 'table'}"
+    case = Case("", "sim/collect.py", (*commands.usual["sim/collect.py"], "collect.trials=3", output))
+    return case, ("table/scenes.parquet", "table/trials.parquet")
+
+
+def disturb(name: str, inputs: Path, place: Path) -> Count:
+    """Stop a command again and again, and compare what it ends with."""
+    count, rng = Count(), np.random.default_rng(0)
+    undisturbed = JOBS[name](inputs, place / "undisturbed")
+    start = time.monotonic()
+    status, said = Start(undisturbed, place / "undisturbed").wait()
+    longest_s = time.monotonic() - start
+    if status != 0:
+        count.faults.append(f"status {status} undisturbed")
+        log.warning("%s", said)
+        return count
+    expected = results(undisturbed, place / "undisturbed")
+    for kind in (signal.SIGINT, signal.SIGKILL):
+        work = place / kind.name
+        own = JOBS[name](inputs, work)
+        for _ in range(ROUNDS):
+            running = Start(own, work)
+            time.sleep(rng.uniform(0, longest_s))
+            _judge(running.stop(kind), kind, count)
+            _check_whole(work, count)
+        _finish([Start(own, work)], own, work, expected, count)
+    own = JOBS[name](inputs, place / "pair")
+    _finish([Start(own, place / "pair") for _ in range(2)], own, place / "pair", expected, count)
+    count.pairs += 1
+    own = JOBS[name](inputs, place / "elsewhere")
+    _finish([Start(own, place / "elsewhere", ELSEWHERE)], own, place / "elsewhere", expected, count)
+    count.elsewhere += 1
+    return count
+
+
+class Start:
+    """A command that is running.
+
+    Args:
+        own: the command.
+        work: where it works and where what it says is kept.
+        environment: what differs in its environment.
+    """
+
+    def __init__(self, own: Job, work: Path, environment: dict[str, str] | None = None) -> None:
+        work.mkdir(parents=True, exist_ok=True)
+        self._messages = work / f"messages_{time.monotonic_ns()}.txt"
+        self.pid = os.fork()
+        if self.pid == 0:
+            os.setsid()
+            os.environ.update(environment or {})
+            time.tzset()
+            become(lambda: run_script(own.case), self._messages)
+
+    def wait(self) -> tuple[int, str]:
+        """Its status and what it said, when it has ended."""
+        status = os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+        said = self._messages.read_text(errors="replace") if self._messages.exists() else ""
+        return status, said
+
+    def stop(self, kind: signal.Signals) -> tuple[int, str]:
+        """Send a signal to it alone, as `kill` does."""
+        os.kill(self.pid, kind)
+        return self.wait()
+
+
+def _judge(ended: tuple[int, str], kind: signal.Signals, count: Count) -> None:
+    status, said = ended
+    if status == 0:
+        count.ended_before += 1
+    elif kind is signal.SIGKILL:
+        count.killed += 1
+    else:
+        count.interrupted += 1
+        if status != INTERRUPTED or "Traceback" in said:
+            count.faults.append(f"status {status} after an interrupt")
+            log.warning("%s", "\n".join(said.splitlines()[-25:]))
+
+
+def _finish(running: list[Start], own: Job, work: Path, expected: dict[str, str], count: Count) -> None:
+    """Wait for the end and compare what is there with what should be."""
+    for one in running:
+        status, said = one.wait()
+        if status != 0:
+            count.faults.append(f"status {status} after being started again")
+            log.warning("%s", "\n".join(said.splitlines()[-25:]))
+    found = results(own, work)
+    different = [name for name in expected if found.get(name) != expected[name]]
+    if different:
+        count.faults.append(f"other results: {', '.join(different)}")
+    _check_whole(work, count)
+
+
+def _check_whole(work: Path, count: Count) -> None:
+    """Every file under its own name can be read."""
+    for path in work.rglob("*"):
+        if path.name.startswith(".") or not path.is_file():
+            continue
+        try:
+            if path.suffix == ".json":
+                json.loads(path.read_text(encoding="utf-8"))
+            elif path.suffix == ".parquet":
+                pq.read_table(path)
+            elif path.suffix in (".png", ".webp"):
+                Image.open(path).load()
+        except Exception as error:
+            count.faults.append(f"half-written {path.name} ({error})")
+
+
+def results(own: Job, work: Path) -> dict[str, str]:
+    """Digest of what each file says, but for what differs between any two runs."""
+    digests = {}
+    for name in own.results:
+        path = work / name
+        if not path.is_file():
+            digests[name] = "missing"
+        elif path.suffix == ".parquet":
+            frame = pq.read_table(path).to_pandas()
+            timings = [column for column in frame if column.endswith("_s")]
+            digests[name] = repr([row for row in frame.drop(columns=timings).itertuples()])
+        elif path.suffix in ("", ".json"):
+            digests[name] = json.dumps(_lasting(json.loads(path.read_text(encoding="utf-8"))))
+        else:
+            digests[name] = hashlib.sha256(path.read_bytes()).hexdigest()
+    return digests
+
+
+def _lasting(content: Any) -> Any:
+    if isinstance(content, dict):
+        return {key: _lasting(value) for key, value in content.items() if key not in UNEQUAL}
+    return [_lasting(entry) for entry in content] if isinstance(content, list) else content
+
+
+if __name__ == "__main__":
+    main()
