@@ -29,8 +29,13 @@ from cases import Case, Commands  # noqa: E402
 from misuse import LIBRARIES, become, run_script  # noqa: E402
 from places import make_inputs  # noqa: E402
 
+MODULES = (
+    *("preshape.entry_point", "preshape.training_job", "preshape.configured_planner", "preshape.onnx_export"),
+    *("preshape.planning.prior_fitting", "sim.collection", "sim.collected_tables", "analysis.dataset_report"),
+)
+"""What the commands import, loaded before, so that they are stopped at their work and not before it."""
 INTERRUPTED = 130
-ROUNDS = 5
+ROUNDS = 4
 """So often each command is stopped with each signal."""
 UNEQUAL = ("runtime_s", "date", "command", "git_revision", "versions", "seconds")
 """What differs between any two runs."""
@@ -59,6 +64,7 @@ class Count:
     """What happened to a command."""
 
     interrupted: int = 0
+    loading: int = 0
     killed: int = 0
     ended_before: int = 0
     pairs: int = 0
@@ -69,7 +75,7 @@ class Count:
 def main() -> None:
     """Stop every command, and write a table."""
     logging.basicConfig(format="%(message)s", level=logging.INFO, stream=sys.stdout)
-    for library in LIBRARIES:
+    for library in (*LIBRARIES, *MODULES):
         import_module(library)
     texts = sys.argv[1:]
     counts = {}
@@ -80,13 +86,12 @@ def main() -> None:
         for name in JOBS:
             if not texts or any(text in name for text in texts):
                 counts[name] = disturb(name, inputs, Path(folder) / name)
-    log.info("| command | interrupted | killed | ended before | two at once | elsewhere | wrong |")
-    log.info("|---|---:|---:|---:|---:|---:|---|")
+    log.info("| command | interrupted | while loading | killed | ended before | pairs | elsewhere | wrong |")
+    log.info("|---|---:|---:|---:|---:|---:|---:|---|")
     for name, count in counts.items():
-        numbers = (count.interrupted, count.killed, count.ended_before, count.pairs, count.elsewhere)
-        log.info(
-            "| %s | %s | %s |", name, " | ".join(map(str, numbers)), "; ".join(count.faults) or "nothing"
-        )
+        stopped = (count.interrupted, count.loading, count.killed, count.ended_before)
+        numbers = " | ".join(map(str, (*stopped, count.pairs, count.elsewhere)))
+        log.info("| %s | %s | %s |", name, numbers, "; ".join(count.faults) or "nothing")
     sys.exit(any(count.faults for count in counts.values()))
 
 
@@ -220,7 +225,9 @@ def _judge(ended: tuple[int, str], kind: signal.Signals, count: Count) -> None:
         count.killed += 1
     else:
         count.interrupted += 1
-        if status != INTERRUPTED or "Traceback" in said:
+        loading = "Traceback" in said and "in command" not in said  # nothing had begun yet
+        count.loading += loading
+        if status != INTERRUPTED or ("Traceback" in said and not loading):
             count.faults.append(f"status {status} after an interrupt")
             log.warning("%s", "\n".join(said.splitlines()[-25:]))
 
@@ -265,7 +272,7 @@ def results(own: Job, work: Path) -> dict[str, str]:
         elif path.suffix == ".parquet":
             frame = pq.read_table(path).to_pandas()
             timings = [column for column in frame if column.endswith("_s")]
-            digests[name] = repr([row for row in frame.drop(columns=timings).itertuples()])
+            digests[name] = repr(list(frame.drop(columns=timings).itertuples()))
         elif path.suffix in ("", ".json"):
             digests[name] = json.dumps(_lasting(json.loads(path.read_text(encoding="utf-8"))))
         else:
