@@ -31,13 +31,22 @@ class ClimbPanel:
         jobs: does what the browser asks for.
         moved: what is to be done when another grasp is chosen.
         from_the_end: whether a new plan is first shown at the end of its climb, or at its beginning.
+        without: what is said as long as there is no plan.
     """
 
-    def __init__(self, gui: GuiApi, jobs: JobQueue, moved: Callable[[], None], *, from_the_end: bool) -> None:
+    def __init__(
+        self,
+        gui: GuiApi,
+        jobs: JobQueue,
+        moved: Callable[[], None],
+        *,
+        from_the_end: bool,
+        without: str = NO_PLAN,
+    ) -> None:
         self._plan: GraspPlan | None = None
         self._shown: int | None = None
-        self._moved, self._from_the_end = moved, from_the_end
-        self._text = gui.add_markdown(NO_PLAN)
+        self._moved, self._from_the_end, self._without = moved, from_the_end, without
+        self._text = gui.add_markdown(without)
         self.start = gui.add_dropdown("grasp", ("-",), disabled=True)
         self.step = gui.add_slider("step", min=0, max=1, step=1, initial_value=0, disabled=True)
         self.plot = LinePlot(gui, "step", [Line("p(success)", "#005ab5")], (-0.02, 1.05))
@@ -49,7 +58,7 @@ class ClimbPanel:
         self._plan, self._shown = plan, None
         self.start.disabled = plan is None or len(plan.faces) == 1
         if plan is None:
-            self._text.content = NO_PLAN
+            self._text.content = self._without
             self.step.disabled = True
             return
         self.start.options = tuple(self._names())

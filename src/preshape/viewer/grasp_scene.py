@@ -36,6 +36,10 @@ class GraspScene:
         jobs: does what the browser asks for.
         body: the robot.
         executes: whether trials are executed here, so that there are an arm and an object to show.
+
+    Attributes:
+        view, initial, planned, robot: the figures; no robot where nothing is executed.
+        switches: whether each is shown, by the name in the panel.
     """
 
     def __init__(self, server: ViserServer, jobs: JobQueue, body: RobotBody, *, executes: bool) -> None:
@@ -55,7 +59,7 @@ class GraspScene:
         self._contacts = scene.add_frame("/contacts", show_axes=False, visible=False)
         self._distinct = False
         self._stands = False
-        self._switches: dict[str, GuiCheckboxHandle] = {}
+        self.switches: dict[str, GuiCheckboxHandle] = {}
         self._add_switches(jobs)
 
     def show_view(self, observation: Observation) -> None:
@@ -116,13 +120,13 @@ class GraspScene:
     def show_robot(self, stands: bool) -> None:
         """Whether the robot has been put somewhere; then it is shown, and the hands of the grasps are not."""
         self._stands = stands
-        set_value(self._switches["initial grasp (orange)"], not stands)
-        set_value(self._switches["planned grasp (blue)"], not stands)
+        set_value(self.switches["initial grasp (orange)"], not stands)
+        set_value(self.switches["planned grasp (blue)"], not stands)
         self.refresh()
 
     def refresh(self) -> None:
         """Show what the switches say."""
-        on = {name: switch.value for name, switch in self._switches.items()}
+        on = {name: switch.value for name, switch in self.switches.items()}
         for name, node in (("point cloud", self.view.cloud), ("camera", self.view.camera)):
             if node is not None:
                 node.visible = on[name]
@@ -136,8 +140,8 @@ class GraspScene:
         names = ["point cloud", "camera", "initial grasp (orange)", "planned grasp (blue)"]
         names += ["robot", "object's true shape"] if self._executes else []
         for name in names:
-            self._switches[name] = self._server.gui.add_checkbox(name, name != "object's true shape")
-            self._switches[name].on_update(lambda _: jobs.put(self.refresh))
+            self.switches[name] = self._server.gui.add_checkbox(name, name != "object's true shape")
+            self.switches[name].on_update(lambda _: jobs.put(self.refresh))
 
 
 def _put(node: SceneNodeHandle, pose: Float[np.ndarray, "4 4"]) -> None:

@@ -32,7 +32,7 @@ class ReplayPanel:
         self.playing = gui.add_checkbox("play", False, disabled=True)
         self.instant = gui.add_slider("instant", min=0, max=1, step=1, initial_value=0, disabled=True)
         self._now = gui.add_markdown("")
-        lines = [Line("object (cm)", "#005ab5"), Line("palm (cm)", "#e69f00", (6, 4))]
+        lines = [Line("object (cm)", "#005ab5"), Line("palm (cm)", "#e69f00", (6.0, 4.0))]
         self.plot = LinePlot(gui, "time (s)", lines)
         self.playing.on_update(lambda _: jobs.put(self._begin))
         self.instant.on_update(lambda _: jobs.put(self._show_instant))

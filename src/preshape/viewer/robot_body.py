@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import coal
 import numpy as np
@@ -15,6 +15,7 @@ from preshape.errors import InputError
 from preshape.geometry.pose import invert_pose
 
 
+@runtime_checkable
 class Robot(Protocol):
     """What the viewer asks of a robot: `sim.robots.description.RobotDescription` has it.
 

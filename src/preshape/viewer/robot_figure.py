@@ -20,6 +20,9 @@ class RobotFigure:
         links: links that are shown.
         colour: RGB, 0-255; None for the robot's own.
         opacity: 1 for solid.
+
+    Attributes:
+        nodes: the meshes by the names of their shapes; their poses are in the world.
     """
 
     def __init__(
@@ -33,7 +36,7 @@ class RobotFigure:
     ) -> None:
         self._body = body
         self._root = scene.add_frame(name, show_axes=False, visible=False)
-        self._nodes: dict[str, MeshHandle] = {
+        self.nodes: dict[str, MeshHandle] = {
             shape.name: scene.add_mesh_simple(
                 f"{name}/{shape.name}",
                 np.asarray(shape.mesh.vertices),
@@ -57,8 +60,8 @@ class RobotFigure:
     def put(self, T_world_base: Float[np.ndarray, "4 4"], joints: Mapping[str, float]) -> None:
         """Put the robot's root link at a pose and its joints at positions (rad or m)."""
         for name, pose in self._body.poses(joints).items():
-            if name in self._nodes:
-                place(self._nodes[name], T_world_base @ pose)
+            if name in self.nodes:
+                place(self.nodes[name], T_world_base @ pose)
 
     def put_palm(self, T_world_palm: Float[np.ndarray, "4 4"], joints: Mapping[str, float]) -> None:
         """Put the palm frame at a pose."""

@@ -36,13 +36,15 @@ def open_server(settings: ServerSettings) -> ViserServer:
         InputError: if the address cannot be listened on, for instance because another program does.
     """
     _check_free(settings)
-    logging.getLogger("websockets").setLevel(logging.WARNING)
+    # A browser that is closed while it connects is nobody's error.
+    logging.getLogger("websockets").setLevel(logging.CRITICAL)
     with quiet():
         server = ViserServer(host=settings.host, port=settings.port, label="preshape", verbose=False)
     if settings.port and server.get_port() != settings.port:  # someone took it meanwhile, and viser moved on
         server.stop()
         raise _not_free(settings, "it was taken meanwhile")
-    server.gui.configure_theme(control_layout="fixed", control_width="large", show_logo=False)
+    server.gui.configure_theme(control_width="large", show_logo=False)
+    server.gui.main_panel.dock_right()
     return server
 
 

@@ -3,7 +3,7 @@
 import logging
 from collections.abc import Callable
 from ipaddress import ip_address
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from viser import ViserServer
 
@@ -15,6 +15,7 @@ TICK_S = 1 / 30
 log = logging.getLogger(__name__)
 
 
+@runtime_checkable
 class Session(Protocol):
     """What is shown."""
 

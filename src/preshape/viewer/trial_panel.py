@@ -36,7 +36,7 @@ class TrialPanel:
             self.object = gui.add_dropdown("object", (ALL_OBJECTS, *self._choice.objects))
             self.outcome = gui.add_dropdown("outcome", (ALL_OUTCOMES, *self._choice.outcomes))
             self._count = gui.add_markdown("")
-            self.number = gui.add_slider("number", min=1, max=2, step=1, initial_value=1)
+            self.number = gui.add_slider("trial", min=1, max=2, step=1, initial_value=1)
             steps = gui.add_button_group("", ("previous", "next"))
             self._about = gui.add_markdown("")
         self.object.on_update(lambda _: jobs.put(self._filter))
@@ -92,7 +92,7 @@ class TrialPanel:
             lines.append(f"- the network says: p(success) = **{success_prob:.3f}**")
         if trial.outcome.executed and self._table.space.frame == "camera":
             off_mm = 1000 * float(np.linalg.norm(trial.reached[:3] - trial.planned[:3]))
-            lines.append(f"- the palm got within {off_mm:.1f} mm of where it was to be")
+            lines.append(f"- the palm reached its pose to within {off_mm:.1f} mm")
         self._about.content = "\n\n".join((*lines[:2], "\n".join(lines[2:])))
 
     def _step(self, event: GuiEvent[GuiButtonGroupHandle]) -> None:

@@ -14,7 +14,7 @@ from preshape.errors import InputError
 from preshape.geometry.pose import transform_points
 from preshape.grasps.heuristic import InitialGrasp
 from preshape.planning.view_planner import ViewPlanner
-from preshape.viewer.climb_panel import ClimbPanel
+from preshape.viewer.climb_panel import NO_PLAN, ClimbPanel
 from preshape.viewer.grasp_scene import GraspScene
 from preshape.viewer.input_values import set_value
 from preshape.viewer.job_queue import JobQueue
@@ -26,6 +26,7 @@ from preshape.viewer.trial_stage import NotExecuted, TrialStage
 from preshape.viewer.trial_story import MEANING
 
 EVERYTHING = FirstTrial()
+NO_PLANNER = "The viewer has no planner for the grasps of this robot: they are rectangles, not palm poses."
 
 log = logging.getLogger(__name__)
 
@@ -69,10 +70,13 @@ class TrialSession:
         self.trials = TrialPanel(server.gui, jobs, parts.trials, self.show_trial)
         tabs = server.gui.add_tab_group()
         with tabs.add_tab("Climb"):
-            self.climb = ClimbPanel(server.gui, jobs, self._show_grasp, from_the_end=False)
+            without = NO_PLAN if parts.planner else NO_PLANNER
+            self.climb = ClimbPanel(server.gui, jobs, self._show_grasp, from_the_end=False, without=without)
         with tabs.add_tab("Execution"):
             self.repeat = server.gui.add_button("repeat the recorded grasp")
-            self.execute = server.gui.add_button("execute the grasp of the climb")
+            self.execute = server.gui.add_button(
+                "execute the grasp of the climb", visible=bool(parts.planner)
+            )
             self.replay = ReplayPanel(server.gui, jobs, self._show_state)
         self.repeat.on_click(lambda _: jobs.put(self.perform_recorded))
         self.execute.on_click(lambda _: jobs.put(self.perform_planned))

@@ -1,7 +1,7 @@
 """Where the trials of a table take place, as the viewer needs it; the simulator has one."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 import trimesh
@@ -53,6 +53,7 @@ class NotExecuted:
     reason: str
 
 
+@runtime_checkable
 class TrialStage(Protocol):
     """Shows scenes and repeats trials."""
 

@@ -9,6 +9,7 @@ from preshape.geometry.pose import quaternion_from_pose, transform_points
 from preshape.perception.observation import Observation
 
 FRUSTUM_SCALE = 0.12
+FRUSTUM_LINE_M = 0.004
 IMAGE_STEP = 2
 """The frustum's image is made of every so many pixels."""
 
@@ -46,6 +47,7 @@ class ViewFigure:
             fov=2 * math.atan(camera.height / 2 / camera.fy),
             aspect=camera.width / camera.height,
             scale=FRUSTUM_SCALE,
+            thickness=FRUSTUM_LINE_M,
             image=observation.rgb[::IMAGE_STEP, ::IMAGE_STEP],
             wxyz=quaternion_from_pose(camera.T_world_camera),
             position=camera.T_world_camera[:3, 3],
