@@ -1,6 +1,6 @@
 # Every target sets up what it needs; setting up again takes a second. `make help` lists the targets.
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint bench ui lock clean
+.PHONY: help setup demo test lint bench ui docs lock clean
 
 PYTHON_IN_VENV := .venv/bin/python
 
@@ -28,6 +28,9 @@ bench: setup  ## measure against other software, side by side
 
 ui: setup  ## look at trainings in MLflow, at http://127.0.0.1:5000, for this machine alone
 	.venv/bin/mlflow ui --backend-store-uri sqlite:///mlflow.db --host 127.0.0.1
+
+docs: setup  ## build the documentation site, outputs/docs/index.html; a broken link is an error
+	NO_MKDOCS_2_WARNING=1 $(PYTHON_IN_VENV) -m mkdocs build --strict
 
 lock: setup  ## write requirements.lock from the virtual environment
 	scripts/lock.sh
