@@ -108,6 +108,8 @@ def train(
     if settings.learning.start is not None:
         load_weights(settings.learning.start, model)  # with the statistics that they are used to
         model.train()
+        if isinstance(model, SuccessModel):
+            model.calibrate(logit_shift=0.0, temperature=1.0)
     unfinished = folder / f"unfinished-{_identity(model, data, settings)}.ckpt"
     curves = _fit(model, data, settings, unfinished, run)
     if isinstance(model, SuccessModel):

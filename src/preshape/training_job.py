@@ -9,7 +9,7 @@ from typing import Any
 from preshape.data.labelled_data import LabelledData
 from preshape.errors import InputError
 from preshape.evaluation.fold_summary import summarise
-from preshape.files import read_json
+from preshape.files import file_hash, read_json
 from preshape.logged_model import TrainedModel, seen_parts
 from preshape.models.success_model import GraspNetwork, SuccessModel
 from preshape.provenance import command_line, device_name, git_revision
@@ -68,12 +68,13 @@ class TrainingJob:
             data.setup()
             tracking = tracking if is_first_process() else NoTracking()
             with tracking.run(self.name, self.config, _tags(data, settings)) as run:
-                result = train(model, data, settings, self.folder, run, self._description(model, data))
+                description = self._description(model, data, settings)
+                result = train(model, data, settings, self.folder, run, description)
                 self._keep_model(model, data, run)
             return f"{self.name}: {result.metrics.summary()}; weights: {result.weights}"
         _refuse_several_devices(settings)
         data.setup()
-        description = self._description(model, data)
+        description = self._description(model, data, settings)
         group, identity = self.folder.parent, description["identity"]
         member = SweepMember(
             name=group.name,
@@ -127,8 +128,14 @@ class TrainingJob:
                 )
             )
 
-    def _description(self, model: GraspNetwork, data: LabelledData) -> dict[str, Any]:
-        """What the file of the metrics says about the job."""
+    def _description(
+        self, model: GraspNetwork, data: LabelledData, settings: TrainerSettings
+    ) -> dict[str, Any]:
+        """What the file of the metrics says about the job.
+
+        Raises:
+            InputError: if the weights to start from cannot be read.
+        """
         code = [source_digest(module) for module in (*DECISIVE, *_modules(model, data))]
         return {
             "name": self.name,
@@ -137,6 +144,7 @@ class TrainingJob:
                 "settings": _digest(_without(self.unresolved, WITHOUT_INFLUENCE)),
                 "data": data.data_hash,
                 "code": _digest(code),
+                **_identity_of_start(settings.learning.start),
             },
         }
 
@@ -165,6 +173,19 @@ def _tags(data: LabelledData, settings: TrainerSettings) -> dict[str, str]:
 
 def _modules(*parts: object) -> tuple[str, ...]:
     return tuple(type(part).__module__ for part in parts)
+
+
+def _identity_of_start(weights: str | None) -> dict[str, str]:
+    """Digest of the weights that a training starts from: their file may be another one the next time."""
+    if weights is None:
+        return {}
+    if not Path(weights).is_file():
+        raise InputError(
+            "There are no weights to learn on from",
+            where=weights,
+            fix="train them first with `python src/train.py`, or correct learning.settings.start",
+        )
+    return {"start": file_hash(weights)}
 
 
 def _refuse_several_devices(settings: TrainerSettings) -> None:

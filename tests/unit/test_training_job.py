@@ -1,5 +1,6 @@
 """Folds of a sweep: trained once, summarised together, and again if anything was changed."""
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -41,8 +42,8 @@ def train_fold(
         retrain_after_code_changes=settings.pop("retrain_after_code_changes", True),
     )
     trials = make_data(data, 0.25, split="seen", fold=fold)
-    learning = replace(SETTINGS.learning, iterations=6)
-    return job.run(make_network(), trials, replace(SETTINGS, learning=learning, **settings), NoTracking())
+    settings.setdefault("learning", replace(SETTINGS.learning, iterations=6))
+    return job.run(make_network(), trials, replace(SETTINGS, **settings), NoTracking())
 
 
 def test_a_sweep_summarises_its_folds_and_trains_them_once(data_folder: Path, tmp_path: Path) -> None:
@@ -70,6 +71,20 @@ def test_other_code_trains_a_fold_again_unless_it_may_stand(data_folder: Path, t
     write_json(path, content)
     assert "before" in train_fold(group, data_folder, 0, retrain_after_code_changes=False)
     assert "before" not in train_fold(group, data_folder, 0)
+
+
+def test_a_fold_is_trained_again_from_other_weights(data_folder: Path, tmp_path: Path) -> None:
+    group, start = tmp_path / "tiny", tmp_path / "start" / "model.safetensors"
+    learning = replace(SETTINGS.learning, iterations=6, start=str(start))
+    with pytest.raises(InputError, match="no weights to learn on from"):
+        train_fold(group, data_folder, 0, learning=learning)
+    train_fold(start.parents[1] / "others", data_folder, 0)
+    shutil.copytree(start.parents[1] / "others" / "seen_fold0", start.parent)
+    assert "before" not in train_fold(group, data_folder, 0, learning=learning)
+    assert "before" in train_fold(group, data_folder, 0, learning=learning)
+    for name in (start.name, f"{start.name}.json"):
+        shutil.copy(group / "seen_fold0" / name, start.parent / name)
+    assert "before" not in train_fold(group, data_folder, 0, learning=learning)
 
 
 def test_several_devices_are_refused_in_a_sweep(data_folder: Path, tmp_path: Path) -> None:

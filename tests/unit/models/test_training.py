@@ -68,6 +68,25 @@ def test_a_seed_decides_the_weights(data: GraspDataModule, tmp_path: Path) -> No
     assert first != other
 
 
+def test_learning_on_begins_with_the_other_weights_and_their_statistics(
+    data: GraspDataModule, data_folder: Path, tmp_path: Path
+) -> None:
+    trained(data, tmp_path / "first")
+    start = tmp_path / "first" / "model.safetensors"
+    other = make_data(data_folder, validation_fraction=0.0, fold=1)
+    learning = replace(SETTINGS.learning, start=str(start), learning_rate=0.0)
+    settings = replace(SETTINGS, learning=learning)
+    result = train(make_network(7), other, settings, tmp_path / "second", UntrackedRun())
+    given, found = make_network(1), make_network(2)
+    load_weights(start, given)
+    load_weights(result.weights, found)
+    assert given.temperature != 1
+    assert found.temperature == 1, "the calibration of other data is not kept"
+    given.calibrate(logit_shift=0.0, temperature=1.0)
+    for name, value in given.state_dict().items():
+        assert torch.equal(value, found.state_dict()[name]), name
+
+
 @pytest.mark.parametrize("validation_fraction", [0.25, 0.0])
 def test_an_interrupted_training_ends_with_the_same_weights(
     data_folder: Path, tmp_path: Path, validation_fraction: float
