@@ -11,9 +11,9 @@ import pandas as pd
 from preshape.checkpoints import load_weights
 from preshape.cornell.data_module import CornellDataModule
 from preshape.cornell.detection import Detection, Detector
+from preshape.cornell.detection_rates import detection_rates
 from preshape.data.folds import FOLDS, SplitScheme
 from preshape.errors import InputError
-from preshape.evaluation.intervals import wilson
 from preshape.evaluation.metrics import classification_metrics
 from preshape.files import read_json, write_json
 from preshape.models.success_model import SuccessModel
@@ -122,7 +122,13 @@ def result_rows(name: str, outcomes: Sequence[FoldOutcome], seed: int) -> list[d
         own = [outcome for outcome in outcomes if outcome.split == split]
         if own:
             head = {"data": name, "folds": protocol}
-            rows += [head | row for row in (*_recognition(own, seed), *_detection_rates(own))]
+            rows += [
+                head | row
+                for row in (
+                    *_recognition(own, seed),
+                    *detection_rates([outcome.detections for outcome in own]),
+                )
+            ]
     return rows
 
 
@@ -146,26 +152,3 @@ def _recognition(outcomes: Sequence[FoldOutcome], seed: int) -> list[dict[str, A
 def _with_interval(value: float, interval: Sequence[float] | None) -> dict[str, Any]:
     low, high = interval or (None, None)
     return {"value": value, "low": low, "high": high}
-
-
-def _detection_rates(outcomes: Sequence[FoldOutcome]) -> list[dict[str, Any]]:
-    correct: dict[tuple[str, int], list[Detection]] = {}
-    for outcome in outcomes:
-        for own in outcome.detections:
-            starts = 0 if own.method == "grid" else own.starts
-            correct.setdefault((own.method, starts), []).append(own)
-    rows = []
-    for (method, starts), detections in sorted(correct.items()):
-        n, right = len(detections), sum(own.correct for own in detections)
-        low, high = wilson(right, n)
-        rows.append(
-            {
-                "metric": f"detection_{method}" + (f"_{starts}" if starts else ""),
-                "value": right / n,
-                "low": low,
-                "high": high,
-                "n": n,
-                "predicted": float(np.mean([own.success_prob for own in detections])),
-            }
-        )
-    return rows

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Shaped
 from scipy.special import expit, logit
 from sklearn.isotonic import IsotonicRegression
 
@@ -30,22 +30,25 @@ def isotonic_regression(labels: Bool[np.ndarray, "n"], success_prob: Float[np.nd
 
 
 def cross_fitted(
-    fit: Fit, labels: Bool[np.ndarray, "n"], success_prob: Float[np.ndarray, "n"], half: Bool[np.ndarray, "n"]
+    fit: Fit,
+    labels: Bool[np.ndarray, "n"],
+    success_prob: Float[np.ndarray, "n"],
+    part: Shaped[np.ndarray, "n"],
 ) -> Float[np.ndarray, "n"]:
-    """Probabilities of each half of the trials, corrected by the other half.
+    """Probabilities of each part of the trials, corrected by all the others.
 
     Args:
         fit: makes the correction.
         labels: whether each trial lifted.
         success_prob: predicted probability of it.
-        half: which half each trial belongs to; trials of one scene belong together.
+        part: which part each trial belongs to, such as a half or a fold; trials of one scene belong together.
 
     Returns:
-        NaN if one of the halves is empty.
+        NaN if there is one part alone.
     """
     corrected = np.full(len(labels), np.nan)
-    if half.any() and not half.all():
-        for own in (half, ~half):
+    for own in (part == name for name in np.unique(part)):
+        if not own.all():
             corrected[own] = fit(labels[~own], success_prob[~own])(success_prob[own])
     return corrected
 
