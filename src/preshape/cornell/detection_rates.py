@@ -42,7 +42,10 @@ def detection_rates(folds: Sequence[Sequence[Detection]]) -> list[dict[str, Any]
         rows.append(
             {
                 "metric": f"detection_{method}" + (f"_{starts}" if starts else ""),
-                **{"value": right / n, "low": low, "high": high, "n": n},
+                "value": right / n,
+                "low": low,
+                "high": high,
+                "n": n,
                 **_agreement(correct, said),
                 "corrected": corrected,
             }
