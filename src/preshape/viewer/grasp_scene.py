@@ -7,7 +7,7 @@ import trimesh
 from jaxtyping import Float
 from viser import GuiCheckboxHandle, SceneNodeHandle, ViserServer
 
-from preshape.drawing.grasp_overlay import INITIAL_STYLE, PLANNED_STYLE
+from preshape.drawing.canvas import INITIAL_STYLE, PLANNED_STYLE
 from preshape.geometry.pose import quaternion_from_pose
 from preshape.perception.observation import Observation
 from preshape.viewer.input_values import set_value
