@@ -11,6 +11,7 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.errors import ConfigCompositionException, OverrideParseException
 from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
+from omegaconf.errors import InterpolationKeyError
 
 from preshape.composition import check_composition, chosen_option
 from preshape.errors import InputError, bad_input_behind
@@ -80,12 +81,21 @@ def _run_job(main: Callable[[DictConfig], None], cfg: DictConfig) -> None:
         check_composition(cfg)
         main(cfg)
     except Exception as error:
-        bad_input = bad_input_behind(error)
+        bad_input = _misfit(error) if isinstance(error, InterpolationKeyError) else bad_input_behind(error)
         if bad_input is None:
             raise
         if HydraConfig.get().mode is RunMode.MULTIRUN:  # the sweep says which of its jobs it was
             raise bad_input from None
         _refuse(str(bad_input))
+
+
+def _misfit(error: InterpolationKeyError) -> InputError:
+    """What a chosen part lacks that another one refers to."""
+    return InputError(
+        f"The chosen parts do not fit together: {str(error).splitlines()[0]}",
+        where=str(error.full_key or "the chosen settings"),
+        fix="choose other parts; `--cfg job` shows what they are made of",
+    )
 
 
 def _misuse(error: ConfigCompositionException | OverrideParseException) -> str:

@@ -88,6 +88,8 @@ def check_values(cfg: DictConfig) -> None:
             raise _not_possible(key, value, "a number from 0 to below 1")
         if name in ONE_OF and value not in ONE_OF[name]:
             raise _not_possible(key, value, f"one of {', '.join(ONE_OF[name])}")
+        if name == "output" and value is None:
+            raise _not_possible(key, value, "a path")
         if name in PATHS and not isinstance(value, str | None):
             raise _not_possible(key, value, f"a path, such as ./{value}")
     if HydraConfig.initialized():

@@ -98,6 +98,7 @@ def test_outputs_can_lie_beside_the_user(run, tmp_path) -> None:
         (["part.colour=red"], "Could not override 'part.colour'"),
         (["divisor=[1"], "'divisor=[1' cannot be read"),
         (["divisor=???"], "divisor=..."),
+        (["part.size=${no.such}"], "Interpolation key 'no.such' not found"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )

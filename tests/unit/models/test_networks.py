@@ -145,7 +145,8 @@ def test_gradient_by_theta_agrees_with_finite_differences(
 def test_dropout_works_in_training_only(model: SuccessModel, view: ViewBatch, theta: Tensor) -> None:
     assert torch.equal(model(view, theta), model(view, theta))
     model.train()
-    assert not torch.equal(model(view, theta), model(view, theta))
+    drops = any(isinstance(layer, torch.nn.Dropout) for layer in model.modules())
+    assert torch.equal(model(view, theta), model(view, theta)) is not drops
 
 
 def test_half_precision_patches_are_taken(model: SuccessModel, view: ViewBatch, theta: Tensor) -> None:
