@@ -50,7 +50,7 @@ def _check_nothing_is_missing(cfg: DictConfig) -> None:
 def _check_model_fits_robot(cfg: DictConfig) -> None:
     robot_space = OmegaConf.select(cfg, "robot.grasp_space.name")
     model_space = OmegaConf.select(cfg, "model.grasp_space")
-    if None in (robot_space, model_space) or robot_space == model_space:
+    if None in (robot_space, model_space) or robot_space == model_space or not _needs_model(cfg):
         return
     robot, model = _choice(cfg, "robot"), _choice(cfg, "model")
     raise InputError(
@@ -104,6 +104,12 @@ def _check_robot_can_execute(cfg: DictConfig) -> None:
         where=robot,
         fix="choose a robot that can be simulated, such as robot=baxter with camera=overhead",
     )
+
+
+def _needs_model(cfg: DictConfig) -> bool:
+    """Whether the network is used: not by planners none of which asks it."""
+    planners = [node for _, node in _planners(cfg)]
+    return not planners or any(OmegaConf.select(node, "needs_model") for node in planners)
 
 
 def _planners(cfg: DictConfig) -> Iterator[tuple[str, Any]]:

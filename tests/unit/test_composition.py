@@ -47,6 +47,11 @@ def test_model_for_another_grasp_space_is_refused() -> None:
     )
 
 
+def test_a_model_that_no_planner_asks_may_be_for_another_grasp_space() -> None:
+    other = {"name": "config_cnn", "grasp_space": "rectangle4"}
+    check(robot=ROBOT, model=other, planner={"name": "heuristic", "needs_model": False})
+
+
 def test_trials_of_another_robot_are_refused() -> None:
     with pytest.raises(InputError, match="dataset=two_finger holds trials of robot baxter") as refusal:
         check(robot=ROBOT, dataset={"name": "two_finger", "robot": "baxter"})
