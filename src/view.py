@@ -9,6 +9,7 @@ from omegaconf import DictConfig
 from preshape.data.tables import read_data_set
 from preshape.entry_point import entry_point
 from preshape.perception.view_choice import load_chosen_view
+from preshape.viewer.request import Request
 from preshape.viewer.saved_view_session import SavedViewSession
 from preshape.viewer.serving import serve
 from preshape.viewer.trial_session import FirstTrial, TrialParts, TrialSession
@@ -17,20 +18,21 @@ from preshape.viewer.trial_session import FirstTrial, TrialParts, TrialSession
 @entry_point("view")
 def main(cfg: DictConfig) -> None:
     """Show a plan for a saved view, or the trials of a table, until interrupted."""
-    files = (cfg.rgb_file, cfg.depth_file, cfg.camera_file)
-    robot = instantiate(cfg.robot.description)
-    planner = None if cfg.robot.heuristic is None else instantiate(cfg.view_planner)
+    files = (cfg.view, cfg.rgb_file, cfg.depth_file, cfg.camera_file)
+    plans, is_saved = cfg.robot.heuristic is not None, any(name is not None for name in files)
+    wants_plan = is_saved or cfg.weights is not None
+    Request(cfg.robot.name, cfg.robot.description is not None, plans, wants_plan).check()
+    view = load_chosen_view(*files) if is_saved else None
+    robot, planner = instantiate(cfg.robot.description), instantiate(cfg.view_planner) if plans else None
     if planner is not None and cfg.weights is not None:
         planner = planner.with_network(instantiate(cfg.model), cfg.weights)
-    if any(name is not None for name in (cfg.view, *files)):
-        view = load_chosen_view(cfg.view, *files)
+    if view is not None and planner is not None:
         plan = planner.plan(view, np.random.default_rng(cfg.seed))
         build = partial(SavedViewSession, robot=robot, observation=view, plan=plan)
     else:
-        first = FirstTrial(cfg.object, cfg.outcome, cfg.trial)
-        scenes, trials = read_data_set(cfg.table, robot.grasp_space, instantiate(cfg.laboratory.origin))
-        parts = TrialParts(robot, scenes, trials, instantiate(cfg.stage), planner)
-        build = partial(TrialSession, parts=parts, first=first)
+        tables = read_data_set(cfg.table, robot.grasp_space, instantiate(cfg.laboratory.origin))
+        parts = TrialParts(robot, *tables, instantiate(cfg.stage), planner)
+        build = partial(TrialSession, parts=parts, first=FirstTrial(cfg.object, cfg.outcome, cfg.trial))
     serve(instantiate(cfg.server), build)
 
 
