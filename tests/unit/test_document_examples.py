@@ -1,6 +1,8 @@
-"""The Python examples of the documents run."""
+"""The examples of the documents run."""
 
+import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -21,3 +23,71 @@ def test_examples_of_the_data_documents_run(document: Path) -> None:
         )
         assert done.returncode == 0, done.stderr
         assert done.stdout
+
+
+NAMED = re.compile(r"`([\w/]+\.(?:py|yaml))`:\n\n```\w+\n(.*?)```", re.DOTALL)
+"""A file of an example: its name, and what stands in it."""
+BUILD = """
+from pathlib import Path
+import pytest
+from hydra import compose, initialize_config_dir
+from hydra.utils import instantiate
+import preshape.entry_point
+
+@pytest.mark.parametrize(("command", "choice", "part", "made"), CHOSEN)
+def test_it_is_chosen_and_built(command, choice, part, made):
+    with initialize_config_dir(str(Path(__file__).parents[2] / "conf"), version_base="1.3"):
+        cfg = compose(command, [choice])
+    for name in part.split("."):
+        cfg = cfg[name]
+    assert type(instantiate(cfg)).__name__ == made
+"""
+CHOSEN = (
+    ("train", "model=mean_image", "model", "MeanImage"),
+    ("train", "model=mean_image", "learning.settings", "LearningSettings"),
+    ("plan", "planner=coordinate_search", "planner.method", "CoordinateSearchPlanner"),
+    ("collect", "objects=bricks", "objects.set", "Bricks"),
+    ("collect", "robot=lbr4_allegro_long", "robot.description.settings", "RobotSettings"),
+    ("train", "dataset=bricks", "dataset.data.origin", "TableOrigin"),
+)
+"""A command, how the example is chosen, what of it is built, and its type."""
+
+
+def test_parts_are_added_by_the_files_that_the_page_shows(tmp_path: Path) -> None:
+    for name in ("conf", "src", "sim", "tests"):
+        shutil.copytree(ROOT / name, tmp_path / name)
+    (tmp_path / "pyproject.toml").symlink_to(ROOT / "pyproject.toml")
+    examples = dict(NAMED.findall((ROOT / "docs" / "extending.md").read_text(encoding="utf-8")))
+    assert {name.split("/")[1] for name in examples if name.startswith("conf/")} == {
+        "model",
+        "learning",
+        "planner",
+        "objects",
+        "robot",
+        "dataset",
+    }
+    for name, text in examples.items():
+        assert not (tmp_path / name).exists()
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    (tmp_path / "tests" / "unit" / "test_built.py").write_text(
+        f"CHOSEN = {CHOSEN}\n{BUILD}", encoding="utf-8"
+    )
+    own_tests = [name for name in examples if name.startswith("tests/")]
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-q",
+            "-o",
+            "addopts=-p no:dash -p no:cacheprovider",
+            *own_tests,
+            "tests/unit/test_built.py",
+        ],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": f"{tmp_path / 'src'}:{tmp_path}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert f"{len(own_tests) + len(CHOSEN)} passed" in done.stdout, done.stdout + done.stderr
