@@ -69,3 +69,12 @@ def test_a_broken_link_fails_the_build(tmp_path: Path, broken: str) -> None:
     done = build_site(tmp_path / "site", config)
     assert done.returncode != 0
     assert broken.split("#")[0].removeprefix("../") in done.stderr
+
+
+def test_troubleshooting_knows_what_the_doctor_knows() -> None:
+    sources = (path.read_text(encoding="utf-8") for path in (ROOT / "src/preshape/health").glob("*.py"))
+    checks = {name for source in sources for name in re.findall(r'Finding\(\s*"([^"]+)"', source)}
+    page = (ROOT / "docs" / "troubleshooting.md").read_text(encoding="utf-8")
+    table = page.split("| check |")[1].split("\n\n")[0]
+    assert {line.split("|")[1].strip() for line in table.splitlines()[2:]} == checks
+    assert len(checks) == 10
