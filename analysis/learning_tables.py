@@ -14,7 +14,7 @@ Runs = Mapping[tuple[str, str], LearningRun]
 SPLITS = ("seen", "unseen")
 PAPER_AUC = {"seen": "paper 0.83 ± 0.02", "unseen": "paper 0.82 ± 0.06"}
 PAPER_DECISIONS = {"seen": ("0.766 (0.038)", "0.405 (0.016)"), "unseen": ("0.756 (0.05)", "0.385 (0.096)")}
-"""Accuracy and F1 of config-CNN (paper, table 2)."""
+"""Accuracy and F1 of config-CNN (paper, table 1)."""
 PAPER_RANDOM = ("0.5", "0.172 (0.02)")
 NOT_RUN = "*not run*"
 NUMBERS = (150, 500, 1500, 5000)
