@@ -1,19 +1,19 @@
 """What a copy of the Cornell grasp data set holds: counts, folds, surfaces and a contact sheet."""
 
-from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from analysis.cornell_protocols import detection_sheet, recognition_roc
+from analysis.cornell_results import SECTION, results_section
 from analysis.cornell_sheet import contact_sheet
 from analysis.cornell_surfaces import surface_figures
 from analysis.cornell_tables import page
+from analysis.results_page import put_section
 from preshape.cornell.data_set import CornellDataSet, read_cornell
 from preshape.cornell.folds import image_folds, object_folds
-from preshape.cornell.rectangle_metric import is_correct
+from preshape.cornell.label_agreement import label_agreement
 from preshape.drawing.picture_files import save_picture
-from preshape.evaluation.intervals import wilson
 from preshape.files import atomic_path, read_json, write_json
 from preshape.provenance import provenance
 
@@ -23,22 +23,24 @@ class CornellReport:
     """The report of a copy of the data set.
 
     Args:
-        root: folder of the data set.
+        root: folder of the data set; None to write nothing but the section of the results page.
         output: folder for `cornell.json`, `cornell.md` and pictures.
         shown: how many images the contact sheet has.
         compared: of how many images both surfaces are compared where both are there.
         seed: of the folds.
         results: result file of `src/detect.py`.
+        page: the results page.
         runs: folder of the sweep that was detected with; None for no pictures of it.
         name: of the rows in the result file that are about this data.
     """
 
-    root: str
+    root: str | None
     output: str
     shown: int
     compared: int
     seed: int
     results: str
+    page: str
     runs: str | None = None
     name: str = "cornell"
 
@@ -46,14 +48,21 @@ class CornellReport:
         """Write everything and say what came out.
 
         Raises:
-            InputError: if the data set is not complete or damaged, or a file cannot be written.
+            InputError: if the data set is not complete or damaged, or a file cannot be read or written.
         """
+        protocols = (
+            read_json(self.results)["runs"] if self.root is None or Path(self.results).is_file() else []
+        )
+        if protocols:
+            put_section(Path(self.page), SECTION, results_section(protocols, self.results))
+        if self.root is None:
+            return f"Recognition and detection in images of {self.results}: {self.page}"
         data = read_cornell(self.root)
         figures = counts(data) | {
             "folds": fold_sizes(data, self.seed),
-            "metric": metric_figures(data),
+            "metric": label_agreement(data.images),
             "surfaces": surface_figures(data, self.compared),
-            "protocols": read_json(self.results)["runs"] if Path(self.results).is_file() else [],
+            "protocols": protocols,
         }
         folder = Path(self.output)
         write_json(folder / "cornell.json", provenance(self.seed) | figures)
@@ -118,25 +127,3 @@ def fold_sizes(data: CornellDataSet, seed: int) -> dict[str, list[dict[str, int]
             for part in parts
         ]
     return sizes
-
-
-def metric_figures(data: CornellDataSet) -> dict[str, dict[str, float]]:
-    """How often the rectangle metric accepts a label, by the other positives of its image.
-
-    Positives are what a perfect detector could return, negatives what it must not.
-    """
-    accepted: Counter[str] = Counter()
-    tried: Counter[str] = Counter()
-    for image in data.images:
-        for i, positive in enumerate(image.positives):
-            others = image.positives[:i] + image.positives[i + 1 :]
-            tried["positives"] += bool(others)
-            accepted["positives"] += is_correct(positive, others)
-        tried["negatives"] += len(image.negatives)
-        accepted["negatives"] += sum(is_correct(own, image.positives) for own in image.negatives)
-    figures = {}
-    for name in ("positives", "negatives"):
-        low, high = wilson(accepted[name], tried[name])
-        rate = accepted[name] / tried[name] if tried[name] else float("nan")
-        figures[name] = {"n": tried[name], "accepted": accepted[name], "rate": rate, "low": low, "high": high}
-    return figures

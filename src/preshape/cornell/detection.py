@@ -85,13 +85,13 @@ class Detector:
     Args:
         planner: the planner, whose number of starts is the largest that is tried.
         counts: numbers of initial rectangles that are compared; each takes the first ones.
-        grid: of the exhaustive search.
+        grid: of the exhaustive search, which takes longest; None for none.
         seed: of the initial rectangles; those of an image are the same for every network.
     """
 
     planner: RectanglePlanner
     counts: Sequence[int]
-    grid: RectangleGrid
+    grid: RectangleGrid | None
     seed: int
 
     def centre(self, image: CornellImage) -> tuple[float, float]:
@@ -125,7 +125,9 @@ class Detector:
         found = [self._chosen(loaded, plan, 1, "random")]
         for count in self.counts:
             found += [self._chosen(loaded, plan, count, method) for method in ("max_eval", "inference")]
-        return [*found, self._exhaustive(loaded, view, centre, model)]
+        if self.grid is not None:
+            found.append(self._exhaustive(self.grid, loaded, view, centre, model))
+        return found
 
     def _chosen(self, loaded: LoadedImage, plan: RectanglePlan, count: int, method: str) -> Detection:
         """The best of the first starts, before planning or after."""
@@ -139,9 +141,14 @@ class Detector:
         return _detection(loaded, method, count, plan.initial(best), prob[best])
 
     def _exhaustive(
-        self, loaded: LoadedImage, view: ViewBatch, centre: tuple[float, float], model: SuccessModel
+        self,
+        grid: RectangleGrid,
+        loaded: LoadedImage,
+        view: ViewBatch,
+        centre: tuple[float, float],
+        model: SuccessModel,
     ) -> Detection:
-        theta = self.grid.around(centre)
+        theta = grid.around(centre)
         low, high = self.planner.space.lower, self.planner.space.upper
         inside = theta[((theta >= low) & (theta <= high)).all(axis=1)]
         planner = self.planner.with_model(model, MaxEvalPlanner())
