@@ -17,7 +17,13 @@ from preshape.provenance import command_line
 from preshape.sweep_folders import PLACES
 
 RUNS_FILE, TABLE_FILE = "runs.csv", "runs.md"
-FIGURES = {"auc": "AUC", "ap": "AP", "brier": "Brier", "ece": "ECE", "palm_m": "palm off by (m)"}
+FIGURES = {
+    "auc": "AUC",
+    "average_precision": "AP",
+    "brier": "Brier",
+    "ece": "ECE",
+    "palm_m": "palm off by (m)",
+}
 """Figures of the table and how they are called; of a network that predicts grasps, the palm's error."""
 SMALLER_IS_BETTER = "palm_m"
 WHERE_AND_WHO = ("hydra", "paths", "tracking")
