@@ -1,20 +1,42 @@
-"""A stage of dvc.yaml depends on code and configuration that decide what it makes, and on nothing else."""
+"""A stage of a dvc.yaml depends on code and configuration that decide what it makes, and on nothing else."""
 
 import ast
 import re
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
 
 ROOT = Path(__file__).parents[2]
-STAGES = yaml.safe_load((ROOT / "dvc.yaml").read_text(encoding="utf-8"))["stages"]
+PIPELINES = [ROOT / "dvc.yaml", *sorted((ROOT / "pipelines").glob("*/dvc.yaml"))]
 PLACES = {"preshape": ROOT / "src" / "preshape", "sim": ROOT / "sim", "analysis": ROOT / "analysis"}
 DECIDES_NOTHING = {  # how a run is started, told and kept, not what comes out
     *("composition", "entry_point", "errors", "files", "logged_model", "mlflow_tracking", "paths"),
     *("progress", "provenance", "run_table", "setting_values", "sweep_folders", "tracking", "training_job"),
+}
+
+
+def expanded(stage: dict[str, Any]) -> dict[str, Any]:
+    """A stage with every value of its matrix in the place of `${item.key}`."""
+
+    def fill(entries: list[Any], key: str, values: list[str]) -> list[Any]:
+        texts = dict.fromkeys(yaml.dump(entry) for entry in entries)
+        filled = (text.replace(f"${{item.{key}}}", value) for text in texts for value in values)
+        return [yaml.safe_load(text) for text in dict.fromkeys(filled)]
+
+    lists = {name: stage.get(name, []) for name in ("deps", "outs", "metrics")}
+    for key, values in stage.get("matrix", {}).items():
+        lists = {name: fill(entries, key, values) for name, entries in lists.items()}
+    return {**stage, **lists}
+
+
+STAGES = {
+    f"{pipeline.parent.relative_to(ROOT)}:{name}": expanded(stage)
+    for pipeline in PIPELINES
+    for name, stage in yaml.safe_load(pipeline.read_text(encoding="utf-8"))["stages"].items()
 }
 
 
@@ -23,7 +45,7 @@ def scripts_of(stage: str) -> set[Path]:
 
 
 def results_of(stage: str) -> set[str]:
-    results = (*STAGES[stage]["outs"], *STAGES[stage].get("metrics", ()))
+    results = (*STAGES[stage]["outs"], *STAGES[stage]["metrics"])
     return {next(iter(result)) if isinstance(result, dict) else result for result in results}
 
 
@@ -48,8 +70,8 @@ def imported_files(path: Path) -> frozenset[Path]:
 def configured_files(stage: str) -> Iterator[Path]:
     """The project's files that the stage's configuration names by `_target_`."""
     for name in STAGES[stage]["deps"]:
-        if name.startswith("conf/"):
-            text = (ROOT / name).read_text(encoding="utf-8")
+        for file in (ROOT / name, *(ROOT / name).rglob("*.yaml")) if name.startswith("conf/") else ():
+            text = file.read_text(encoding="utf-8") if file.is_file() else ""
             for package, *rest in (target.split(".") for target in re.findall(r"_target_: ([\w.]+)", text)):
                 modules = (PLACES[package].joinpath(*rest[:end]) for end in range(1, len(rest)))
                 yield from (file for module in modules if (file := module.with_suffix(".py")).is_file())
