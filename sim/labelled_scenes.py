@@ -1,7 +1,8 @@
 """Scenes with what came of their rectangles, from the tables of a data set."""
 
 import logging
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from preshape.cornell.layout import HEIGHT, WIDTH
@@ -24,12 +25,17 @@ class LabelledScene:
 
     Args:
         scene: the scene; its number is the image's.
-        positives, negatives: rectangles that were executed, and lifted or not.
+        positives, negatives: rectangles that were executed as they were planned, and lifted or not.
     """
 
     scene: Scene
     positives: tuple[GraspRectangle, ...]
     negatives: tuple[GraspRectangle, ...]
+
+    def as_commanded(self, command: Callable[[GraspRectangle], GraspRectangle]) -> "LabelledScene":
+        """The scene with what the gripper was told in place of what was planned."""
+        positives, negatives = (tuple(map(command, own)) for own in (self.positives, self.negatives))
+        return replace(self, positives=positives, negatives=negatives)
 
 
 def labelled_scenes(table: str | Path, space: GraspSpace) -> list[LabelledScene]:

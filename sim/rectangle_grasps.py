@@ -61,6 +61,19 @@ class RectangleGrasps:
 
         return PlacedGrasp(palm, np.full(2, self.gripper.closed_by(jaws.opening_m)), theta_of)
 
+    def commanded(
+        self, scene: Scene, rectangle: GraspRectangle, table: TableSettings, view: Observation
+    ) -> GraspRectangle:
+        """What the gripper is told at a rectangle: the same, opened as far as it can.
+
+        Raises:
+            InputError: if the view has no depth at all.
+        """
+        theta = np.array([rectangle.u, rectangle.v, rectangle.angle_rad, rectangle.opening_px])
+        placed = self.place(scene, theta, table, lambda _: view)
+        told = placed.theta_of(placed.T_world_palm, placed.preshape)
+        return GraspRectangle(*told.tolist(), rectangle.jaw_px)
+
 
 def _plane(camera: Camera, height_m: float) -> Float[np.ndarray, "4"]:
     """The horizontal plane at a height in the world, in the camera frame."""

@@ -1,7 +1,7 @@
 """Executed rectangles as a folder in the layout of the Cornell grasp data set, derived from their tables."""
 
 import shutil
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 
@@ -18,6 +18,8 @@ from preshape.grasps.space import GraspSpace
 from sim.cornell_image import image_paths, write_image
 from sim.job_list import do_jobs
 from sim.labelled_scenes import LabelledScene, labelled_scenes
+from sim.rectangle_grasps import RectangleGrasps
+from sim.table import TableSettings
 from sim.workers import BeginStep, Work, available_cores
 
 IMAGES, MADE_FROM, LOCK = "01", "made_from.json", "making.lock"
@@ -30,12 +32,16 @@ IMAGES_PER_WORKER = 30
 class SimulatedCornell:
     """Makes the folder: a `preshape.cornell.data_module.FolderMaker`.
 
-    Scenes in which nothing was lifted are left out, because every image there has a positive rectangle.
+    Rectangles are written as the gripper executed them: an opening that it does not have is the nearest that
+    it has, so that both jaws are where the image shows them. Scenes in which nothing was lifted are left out,
+    because every image there has a positive rectangle.
 
     Args:
         table: folder with `scenes.parquet` and `trials.parquet`.
         space: what theta means in them.
         renderer: makes the scenes' images.
+        meaning: how the gripper executed them.
+        table_settings: the table on which it did.
         base_height_m: height of the robot's base over the floor; points are written in its frame.
         margin_px: points are written so far around the object; all of them would be 10 MB an image.
         workers: number of processes; None takes every core.
@@ -44,6 +50,8 @@ class SimulatedCornell:
     table: str | Path
     space: GraspSpace
     renderer: SceneRenderer
+    meaning: RectangleGrasps
+    table_settings: TableSettings
     base_height_m: float
     margin_px: int = 160
     workers: int | None = None
@@ -72,6 +80,7 @@ class SimulatedCornell:
         made_from = {
             "tables": data_hash(self.table),
             "renderer": self.renderer.fingerprint,
+            "meaning": asdict(self.meaning),
             "base_height_m": self.base_height_m,
             "margin_px": self.margin_px,
         }
@@ -108,6 +117,9 @@ class SimulatedCornell:
             InputError: if the place cannot be written to.
         """
         view = self.renderer(labelled.scene)
+        labelled = labelled.as_commanded(
+            lambda own: self.meaning.commanded(labelled.scene, own, self.table_settings, view)
+        )
         shown = _around(view.mask, self.margin_px)
         T_base_world = make_pose(np.eye(3), np.array([0.0, 0.0, -self.base_height_m]))
         write_image(

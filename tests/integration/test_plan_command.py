@@ -9,12 +9,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from hydra import compose, initialize_config_dir
+from hydra.utils import instantiate
 from PIL import Image
 from synthetic_scenes import BoxRenderer, make_scene
 
 from preshape.checkpoints import save_weights
 from preshape.configured_planner import plan_view
+from preshape.geometry.camera import Camera
+from preshape.geometry.pose import make_pose
 from preshape.models.palm_points import PalmPoints
+from preshape.perception.observation import Observation
 from preshape.perception.view_files import save_view
 
 PLAN = Path(__file__).parents[2] / "src" / "plan.py"
@@ -72,6 +77,49 @@ def test_heuristic_needs_no_weights_and_single_files_will_do(plan: Command, tmp_
     assert done.returncode == 0, done.stderr
     content = json.loads((tmp_path / "out" / "grasps.json").read_text())
     assert [grasp["success_prob"] for grasp in content["grasps"]] == [None] * 3
+
+
+@pytest.fixture(scope="module")
+def overhead(folder: Path) -> Observation:
+    """A red box of 50 x 120 x 100 mm in the middle of a table, seen from 1 m straight above."""
+    T_world_camera = make_pose(np.diag([1.0, -1.0, -1.0]), np.array([0.0, 0.0, 1.0]))
+    camera = Camera(640, 480, 600.0, 600.0, 319.5, 239.5, T_world_camera)
+    rgb, depth = np.full((480, 640, 3), 200, dtype=np.uint8), np.ones((480, 640), dtype=np.float32)
+    half_u, half_v = (round(600 / 0.9 * size / 2) for size in (0.05, 0.12))
+    top = slice(240 - half_v, 240 + half_v), slice(320 - half_u, 320 + half_u)
+    rgb[top], depth[top] = (180, 20, 20), 0.9
+    view = Observation(rgb, depth, None, camera)
+    save_view(folder / "overhead", view)
+    return view
+
+
+def test_rectangles_are_planned_for_a_gripper(
+    plan: Command, folder: Path, overhead: Observation, tmp_path: Path
+) -> None:
+    torch.manual_seed(0)
+    with initialize_config_dir(str(PLAN.parents[1] / "conf"), version_base="1.3"):
+        network = instantiate(compose("plan", ["robot=baxter"]).model)
+    weights = folder / "rectangles.safetensors"
+    save_weights(weights, network, data_hash="none", git_revision="none", metrics={})
+    done = plan("robot=baxter", "view=overhead", f"weights={weights}", "planner.method.max_iterations=2")
+    assert done.returncode == 0, done.stderr
+    content = json.loads((tmp_path / "out" / "grasps.json").read_text())
+    assert (content["planner"], content["names"][2:]) == ("paper_rectangle", ["angle", "opening"])
+    assert len(content["grasps"]) == 4
+    for grasp in content["grasps"]:
+        assert grasp["success_prob"] >= grasp["initial_success_prob"]
+        u, v, _, opening = grasp["theta"]
+        place = np.array([(u - 319.5) / 600, -(v - 239.5) / 600, 1.0]) * (0.9, 0.9, 0.07)
+        # the fingers' ends are 30 mm below the top of the box, which is 100 mm high
+        np.testing.assert_allclose(np.array(grasp["T_world_palm"])[:3, 3], place, atol=0.002)
+        np.testing.assert_allclose(np.array(grasp["T_table_palm"])[:3, 0], (0, 0, -1), atol=0.02)
+        assert grasp["opening_m"] == pytest.approx(opening * 0.9 / 600, rel=0.02)
+    with Image.open(tmp_path / "out" / "grasps.png") as picture:
+        assert picture.width > 3 * picture.height
+
+
+def test_an_image_of_another_size_is_refused_for_rectangles(plan: Command, tmp_path: Path) -> None:
+    refused(plan("robot=baxter", "planner=heuristic", "view=view"), "640 x 480", tmp_path)
 
 
 def test_three_lines_of_python_plan_the_same(plan: Command, folder: Path, tmp_path: Path) -> None:

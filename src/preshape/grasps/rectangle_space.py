@@ -1,5 +1,7 @@
 """The grasp space of a two-finger gripper: a rectangle in the image, four numbers (paper, section 4.4)."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from jaxtyping import Float, Float64
 
@@ -16,7 +18,7 @@ OPENING_PX = (8.0, 110.0)
 
 
 def rectangle_space(
-    name: str, width: int = WIDTH, height: int = HEIGHT, opening_px: tuple[float, float] = OPENING_PX
+    name: str, width: int = WIDTH, height: int = HEIGHT, opening_px: Sequence[float] = OPENING_PX
 ) -> GraspSpace:
     """Grasp space of theta = (u, v, angle, opening), as in `GraspRectangle`, in the pixels of an image.
 

@@ -8,9 +8,10 @@ import pytest
 import torch
 from PIL import Image
 
+from preshape.cornell.rectangle import GraspRectangle
 from preshape.drawing.canvas import INITIAL_STYLE, PLANNED_STYLE
 from preshape.drawing.channel_grid import channel_grid
-from preshape.drawing.grasp_overlay import grasp_overlay
+from preshape.drawing.grasp_overlay import grasp_overlay, rectangle_overlay
 from preshape.drawing.picture_files import save_picture
 from preshape.errors import InputError
 from preshape.geometry.pose import invert_pose, make_pose
@@ -59,6 +60,18 @@ def test_the_rest_of_the_view_stays(table_top: Any) -> None:
     assert picture.shape == GREY.shape
     assert (picture[:100] == 128).all()
     np.testing.assert_array_equal(grasp_overlay(GREY, table_top.camera, HAND, scale=1), GREY)
+
+
+def test_rectangles_are_drawn_around_their_centre_with_jaws_at_both_ends() -> None:
+    level = GraspRectangle(320.0, 240.0, 0.0, 60.0, 25.0)
+    picture = rectangle_overlay(GREY, planned=level, scale=1)[:400].astype(int)
+    drawn = (picture != 128).any(axis=-1)
+    np.testing.assert_allclose(np.argwhere(drawn).mean(axis=0), (240, 320), atol=1)
+    assert not drawn[232:249, 295:346].any()
+    blue = picture[..., 2] - picture[..., 0] > 60
+    assert blue[230:251, 286:292].all()
+    assert blue[230:251, 349:355].all()
+    np.testing.assert_array_equal(rectangle_overlay(GREY, scale=1), GREY)
 
 
 def test_grasps_out_of_view_do_no_harm(table_top: Any) -> None:

@@ -11,6 +11,8 @@ from analytic_objectives import quadratic
 from preshape.data.trial import Face
 from preshape.errors import InputError
 from preshape.geometry.pose import make_pose, rotation_from_euler_xyz
+from preshape.grasps.rectangle_pose import JawPose
+from preshape.grasps.rectangle_space import rectangle_space
 from preshape.grasps.space import GraspSpace
 from preshape.planning.bounds import Bounds, BoxSize
 from preshape.planning.gradient_ascent import GradientAscent
@@ -53,6 +55,23 @@ def test_a_plan_comes_back_to_the_bit(plan: GraspPlan, tmp_path: Path) -> None:
     for field in fields(kept):
         was, is_now = getattr(kept, field.name), getattr(again.result, field.name)
         np.testing.assert_array_equal(np.array(was), np.array(is_now), err_msg=field.name)
+
+
+def test_rectangles_come_back_with_the_gripper(tmp_path: Path) -> None:
+    space = rectangle_space("rectangle4")
+    initial = np.array([[300.0, 200.0, 0.3, 30.0], [310.0, 220.0, 2.0, 50.0]])
+    result = HeuristicPlanner().plan(UnknownSuccess(), initial, Bounds(initial, initial))
+    down = make_pose(
+        rotation_from_euler_xyz(torch.tensor([0.0, 1.5, 0.3])).numpy(), np.array([0.1, 0.2, 0.9])
+    )
+    jaws = (JawPose(down, 0.05, 0.03), JawPose(down @ down, 0.07, 0.01))
+    plan = GraspPlan("test", space, (Face.TOP,) * 2, result, down, np.eye(4), jaws)
+    write_plan(tmp_path / "plan.json", plan)
+    again = read_plan(tmp_path / "plan.json", space)
+    for own, was in zip(again.jaws, jaws, strict=True):
+        assert (own.opening_m, own.advance_m) == (was.opening_m, was.advance_m)
+        np.testing.assert_array_equal(own.T_camera_jaws, was.T_camera_jaws)
+    np.testing.assert_allclose(again.palm_pose_in_world(1), down @ down @ down)
 
 
 def test_the_file_says_how_to_grasp_with_the_best_first(tmp_path: Path) -> None:

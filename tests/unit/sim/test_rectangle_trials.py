@@ -164,7 +164,10 @@ def test_executed_rectangles_become_a_data_set_in_cornells_layout(
     missed = replace(trials[2], trial_id=9, scene_id=1)  # nothing was lifted there
     table = TrialTable.from_trials([*trials, missed], laboratory.space, laboratory.origin)
     write_data_set(tmp_path / "table", SceneTable(laboratory.origin, scenes), table)
-    maker = SimulatedCornell(tmp_path / "table", laboratory.space, laboratory.renderer, 0.8)
+    runner = laboratory.runner
+    maker = SimulatedCornell(
+        tmp_path / "table", laboratory.space, laboratory.renderer, runner.meaning, runner.table, 0.8
+    )
     root = tmp_path / "cornell"
     maker(root)
     (image,) = read_cornell(root).images
