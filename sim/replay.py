@@ -4,10 +4,11 @@ import logging
 from pathlib import Path
 
 from hydra.utils import instantiate
-from omegaconf import DictConfig
+from omegaconf import DictConfig, ListConfig
 
 from preshape.data.tables import read_data_set
 from preshape.entry_point import entry_point
+from preshape.errors import InputError
 from sim.recorder import Recorder
 from sim.repetition import find_trials, repeat
 
@@ -19,7 +20,10 @@ def main(cfg: DictConfig) -> None:
     """Write an animation of each trial and say whether it ended as recorded."""
     laboratory, settings, output = instantiate(cfg.laboratory), instantiate(cfg.recorder), Path(cfg.output)
     scenes, table = read_data_set(cfg.table, laboratory.space)
-    for trial in find_trials(table, cfg.trials):
+    numbers = cfg.trials if isinstance(cfg.trials, ListConfig) else [cfg.trials]
+    if not numbers:
+        raise InputError("No trial is named", where="trials", fix="give numbers, such as trials=[43]")
+    for trial in find_trials(table, numbers):
         recorder = Recorder(settings)
         outcome = repeat(laboratory, scenes, trial, recorder).outcome
         caption = f"{trial.object_id}: {outcome}"

@@ -214,7 +214,7 @@ WRONG_VALUES = {
         "trials=[999999999]",
         "trials=x",
         "trials=[x]",
-        "trials=7",
+        "trials=0.5",
         "recorder.every=0",
         "trials=[]",
     ),

@@ -31,6 +31,8 @@ LIBRARIES = (
     *("torch", "lightning", "hydra", "mlflow", "sapien", "open3d", "pinocchio", "sklearn", "scipy", "pandas"),
     *("matplotlib.pyplot", "trimesh", "coal", "ompl", "toppra", "onnx", "torchmetrics"),
 )
+FEW = 10
+"""For more cases it is worth while to import the libraries before."""
 LIMIT_S = 180.0
 UNFINISHED = re.compile(r"^\..+\.\d+-[0-9a-f]{8}(\.\w+)?$")
 """Names of the temporary files of `preshape.files`."""
@@ -60,8 +62,6 @@ class Outcome:
 def main() -> None:
     """Run all cases and write a table of the kinds."""
     logging.basicConfig(format="%(message)s", level=logging.INFO, stream=sys.stdout)
-    for library in LIBRARIES:
-        import_module(library)
     texts = sys.argv[1:]
     with tempfile.TemporaryDirectory(prefix="misuse") as folder:
         inputs, work = Path(folder) / "inputs", Path(folder) / "work"
@@ -71,6 +71,9 @@ def main() -> None:
         commands = Commands(inputs, work)
         cases = [*syntax_cases(commands), *value_cases(commands), *file_cases(commands)]
         chosen = [case for case in cases if not texts or any(text in str(case) for text in texts)]
+        if len(chosen) > FEW:
+            for library in LIBRARIES:
+                import_module(library)
         outcomes = [run_case(case, inputs, work) for case in chosen]
     log.info("%s", table(outcomes))
     sys.exit(any(outcome.faults for outcome in outcomes))

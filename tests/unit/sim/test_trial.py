@@ -86,7 +86,7 @@ def test_a_lost_trial_ends_early_with_the_outcome_that_it_would_have_had(laborat
     scene = scene_with(laboratory, "pringles_bbq")
     for offset_m, outcome in ((0.068, TrialOutcome.LIFTED), (0.25, TrialOutcome.MISSED)):
         grasp = side_grasp(laboratory, scene, offset_m)
-        film, whole_film = (Recorder(RecorderSettings(every=5)) for _ in range(2))
+        film, whole_film = (Recorder(RecorderSettings(every=20)) for _ in range(2))
         early, whole = runner.run(scene, grasp, film), patient.run(scene, grasp, whole_film)
         assert early.outcome is whole.outcome is outcome
         assert early.reached.tobytes() == whole.reached.tobytes()
@@ -102,8 +102,9 @@ def test_the_soft_label_is_the_share_of_lifted_repetitions(laboratory: Laborator
     trial, again = disturbed.run(scene, sure), disturbed.run(scene, sure)
     assert trial.outcome is TrialOutcome.LIFTED
     assert trial.soft_label == again.soft_label == 1.0
-    assert disturbed.run(scene, side_grasp(laboratory, scene, 0.25)).soft_label == 0.0
-    hopeless = with_settings(laboratory.runner, disturbances=DisturbanceSettings(repeats=2, position_m=0.5))
+    once = with_settings(laboratory.runner, disturbances=DisturbanceSettings(repeats=1))
+    assert once.run(scene, side_grasp(laboratory, scene, 0.25)).soft_label == 0.0
+    hopeless = with_settings(laboratory.runner, disturbances=DisturbanceSettings(repeats=1, position_m=0.5))
     assert hopeless.run(scene, sure).soft_label == 0.0
 
 
