@@ -27,6 +27,8 @@ LEAST = {
     **dict.fromkeys(("max_scenes", "shown", "compared", "samples_per_start", "samples_per_round"), 1),
 }
 """The least value of settings that are whole numbers, by the last part of their names."""
+MOST = {"quality": 100}
+"""The greatest value of some of them."""
 POSITIVE = (
     *("scene_limit_s", "timestep_s", "control_period_s", "learning_rate", "max_gigabytes", "scale", "focal"),
     *("frames_per_s", "max_time_s", "base_height_m"),
@@ -80,6 +82,8 @@ def check_values(cfg: DictConfig) -> None:
             continue
         if name in LEAST and not (_is(value, int) and value >= LEAST[name]):
             raise _not_possible(key, value, f"a whole number from {LEAST[name]} on")
+        if name in MOST and value > MOST[name]:
+            raise _not_possible(key, value, f"a whole number up to {MOST[name]}")
         if name in POSITIVE and not (_is(value, Real) and 0 < value < math.inf):
             raise _not_possible(key, value, "a number greater than 0")
         if name in NOT_NEGATIVE and not (_is(value, Real) and 0 <= value < math.inf):

@@ -195,7 +195,7 @@ WRONG_VALUES = {
             "evaluate.seed=-1",
             "evaluate.seed=x",
         ),
-        *("model=config_cnn", "model=patches_cnn", "robot=baxter", "evaluate.every_grasp_of=[nobody]"),
+        *("model=config_cnn", "model=patches_cnn", "robot=baxter"),
         *(
             "evaluate.filmed_scenes=x",
             "evaluate.poses_per_object=0",

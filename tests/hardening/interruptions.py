@@ -35,7 +35,7 @@ MODULES = (
 )
 """What the commands import, loaded before, so that they are stopped at their work and not before it."""
 INTERRUPTED = 130
-ROUNDS = 4
+ROUNDS = 3
 """So often each command is stopped with each signal."""
 UNEQUAL = ("runtime_s", "date", "command", "git_revision", "versions", "seconds")
 """What differs between any two runs."""
