@@ -24,6 +24,8 @@ from preshape.viewer.server import ServerSettings, open_server
 from preshape.viewer.trial_session import TrialParts, TrialSession
 from preshape.viewer.trial_stage import NotExecuted
 from preshape.viewer.trial_story import trial_story
+from sim.repetition import recorded_grasp
+from sim.state_recorder import StateRecorder
 from sim.trial import PlannedGrasp
 from sim.viewer_stage import LaboratoryStage
 
@@ -136,6 +138,17 @@ def test_a_grasp_before_the_object_misses_it(parts: TrialParts) -> None:
     assert recording.outcome is TrialOutcome.MISSED
     assert len(recording.contact_points) == 0
     assert "without touching the object" in trial_story(recording)
+
+
+def test_whoever_looks_on_changes_no_trial(parts: TrialParts) -> None:
+    """Not even after a view with the robot in it, whose stage has another friction."""
+    assert isinstance(parts.stage, LaboratoryStage)
+    runner, scene = parts.stage.laboratory.runner, parts.scenes.by_id[0]
+    grasp = recorded_grasp(parts.trials.to_trials()[0])
+    parts.stage.look(scene)
+    alone, watched = runner.run(scene, grasp), runner.run(scene, grasp, StateRecorder(1 / 60))
+    assert watched.reached.tobytes() == alone.reached.tobytes()
+    assert watched.lift_height_m == alone.lift_height_m
 
 
 def test_a_grasp_out_of_reach_says_why(parts: TrialParts) -> None:
