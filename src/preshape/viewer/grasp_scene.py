@@ -118,8 +118,12 @@ class GraspScene:
         )
 
     def show_robot(self, stands: bool) -> None:
-        """Whether the robot has been put somewhere; then it is shown, and the hands of the grasps are not."""
+        """Whether the robot has been put somewhere.
+
+        Then it is shown with the object that moves, and the hands of the grasps are not.
+        """
         self._stands = stands
+        set_value(self.switches["object's true shape"], stands)
         set_value(self.switches["initial grasp (orange)"], not stands)
         set_value(self.switches["planned grasp (blue)"], not stands)
         self.refresh()

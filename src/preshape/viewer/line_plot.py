@@ -53,7 +53,7 @@ class LinePlot:
             (uplot.Series(label=x_label), *series, mark),
             scales=scales,
             legend=uplot.Legend(show=len(lines) > 1),
-            height=170,
+            height=150,
         )
 
     @property

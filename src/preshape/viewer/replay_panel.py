@@ -45,7 +45,7 @@ class ReplayPanel:
             of_what: which grasp it is of, for the reader.
         """
         self.recording = recording
-        self._text.content = f"**{of_what}**\n\n{trial_story(recording)}"
+        self._text.content = f"**{of_what.capitalize()}**\n\n{trial_story(recording)}"
         rises_cm = 100 * np.stack((recording.object_rise_m, recording.palm_rise_m))
         set_value(self.playing, False)
         set_value(self.instant, 0)

@@ -101,13 +101,13 @@ class TrialSession:
     def perform_recorded(self) -> None:
         """Repeat the trial in the simulator."""
         if (trial := self.trials.trial) is not None:
-            self._perform(trial, "The recorded grasp")
+            self._perform(trial, "the recorded grasp")
 
     def perform_planned(self) -> None:
         """Execute the grasp at which the climb's slider stands."""
         trial, theta = self.trials.trial, self.climb.theta
         if trial is not None and theta is not None:
-            name = f"The grasp of step {self.climb.step.value}, p(success) {self.climb.success_prob:.2f}"
+            name = f"the grasp of step {self.climb.step.value}, p(success) {self.climb.success_prob:.2f}"
             self._perform(replace(trial, planned=theta), name)
 
     def _look_and_plan(self, trial: Trial) -> None:
@@ -128,16 +128,15 @@ class TrialSession:
 
     def _perform(self, trial: Trial, name: str) -> None:
         scene = self._parts.scenes.by_id[trial.scene_id]
-        what = f"{name} of trial {trial.trial_id} is being executed"
+        what = f"Executing {name} of trial {trial.trial_id}"
         self._say(what, lambda: self._play(scene, trial, name))
 
     def _play(self, scene: Scene, trial: Trial, name: str) -> None:
         came_of_it = self._parts.stage.perform(scene, trial)
         if isinstance(came_of_it, NotExecuted):
             outcome = came_of_it.outcome
-            self.replay.clear(
-                f"**{name}**\n\n**{outcome.value.upper()}**: {MEANING[outcome]}\n\n- {came_of_it.reason}"
-            )
+            ended = f"**{outcome.value.upper()}**: {MEANING[outcome]}"
+            self.replay.clear(f"**{name.capitalize()}**\n\n{ended}\n\n- {came_of_it.reason}")
             return
         self.replay.show(came_of_it, name)
         self.scene.show_robot(True)
