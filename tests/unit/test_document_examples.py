@@ -34,23 +34,30 @@ from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 import preshape.entry_point
 
-@pytest.mark.parametrize(("command", "choice", "part", "made"), CHOSEN)
-def test_it_is_chosen_and_built(command, choice, part, made):
+@pytest.mark.parametrize(("command", "made"), CHOSEN.items())
+def test_they_are_chosen_and_built(command, made):
+    name, *choices = command.split()
     with initialize_config_dir(str(Path(__file__).parents[2] / "conf"), version_base="1.3"):
-        cfg = compose(command, [choice])
-    for name in part.split("."):
-        cfg = cfg[name]
-    assert type(instantiate(cfg)).__name__ == made
+        cfg = compose(name, choices)
+    for path, type_name in made.items():
+        part = cfg
+        for key in path.split("."):
+            part = part[key]
+        assert type(instantiate(part)).__name__ == type_name
 """
-CHOSEN = (
-    ("train", "model=mean_image", "model", "MeanImage"),
-    ("train", "model=mean_image", "learning.settings", "LearningSettings"),
-    ("plan", "planner=coordinate_search", "planner.method", "CoordinateSearchPlanner"),
-    ("collect", "objects=bricks", "objects.set", "Bricks"),
-    ("collect", "robot=lbr4_allegro_long", "robot.description.settings", "RobotSettings"),
-    ("train", "dataset=bricks", "dataset.data.origin", "TableOrigin"),
-)
-"""A command, how the example is chosen, what of it is built, and its type."""
+CHOSEN = {
+    "train model=mean_image dataset=bricks": {
+        "model": "MeanImage",
+        "learning.settings": "LearningSettings",
+        "dataset.data.origin": "TableOrigin",
+    },
+    "plan planner=coordinate_search": {"planner.method": "CoordinateSearchPlanner"},
+    "collect objects=bricks robot=lbr4_allegro_long": {
+        "objects.set": "Bricks",
+        "robot.description.settings": "RobotSettings",
+    },
+}
+"""How the examples are chosen; what of them is built, and its type."""
 
 
 def test_parts_are_added_by_the_files_that_the_page_shows(tmp_path: Path) -> None:

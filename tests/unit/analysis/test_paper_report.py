@@ -52,8 +52,9 @@ def write_report(results: Path, output: Path) -> Path:
 
 
 def fewer(content: dict[str, Any]) -> dict[str, Any]:
-    """The planning experiment with few planners, which are drawn sooner."""
-    short = {"runs": [run for run in content["runs"] if run["planner"] in PLANNERS]}
+    """The planning experiment with few planners and objects, which are drawn sooner."""
+    runs = [run for run in content["runs"] if run["planner"] in PLANNERS]
+    short = {"runs": [run | {"objects": dict(list(run["objects"].items())[:3])} for run in runs]}
     tests = ("tests", "tests_of_all_scenes")
     return (
         content | short | {key: [one for one in content[key] if one["against"] in PLANNERS] for key in tests}
