@@ -140,13 +140,13 @@ def _paper_area(split: str) -> str:
     return PAPER_AUC[split].removeprefix("paper ")
 
 
-def mean_of_folds(values: Sequence[float]) -> Rate:
-    """Mean over folds with its 95 % Student interval; of one fold there is none."""
+def mean_of_folds(values: Sequence[float], largest: float = 1.0) -> Rate:
+    """Mean over folds with its 95 % Student interval, cut off at 0 and `largest`; of one fold there is none."""
     mean = float(np.mean(values))
     if len(values) < 2:
         return Rate(mean)
     half = float(student_t.ppf(0.975, len(values) - 1) * np.std(values, ddof=1) / np.sqrt(len(values)))
-    return Rate(mean, mean - half, mean + half)
+    return Rate(mean, max(0.0, mean - half), min(largest, mean + half))
 
 
 def _decisions(runs: Runs, networks: Sequence[Network]) -> Table:
@@ -206,7 +206,7 @@ def _grasp_errors(runs: Runs, network: Network) -> Table:
     for split in SPLITS:
         run = runs.get((network.group, split))
         if run is not None:
-            about = (split, f"{run['n']:,}", *(_spread(run[name]) for name in names))
+            about = (split, f"{run['n']:,}", *(_spread(run[name], np.inf) for name in names))
             rows.append([network.label, *about])
     header = ("network", "objects", "n", "palm (m)", "palm, best (m)", "orientation (rad)", "joints (rad)")
     note = "Errors at held-out grasps that lifted."
@@ -220,9 +220,9 @@ def _interval(values: Mapping[str, Any]) -> str:
     return f"{rate.value:.3f}{bounds}"
 
 
-def _spread(values: Mapping[str, Any]) -> str:
+def _spread(values: Mapping[str, Any], largest: float = 1.0) -> str:
     """Mean, standard deviation over the folds, and the interval of the mean."""
-    rate = mean_of_folds(values["folds"])
+    rate = mean_of_folds(values["folds"], largest)
     if rate.low is None or rate.high is None:
         return f"{rate.value:.3f}"
     return f"{rate.value:.3f} ({values['std']:.3f}) [{rate.low:.3f}, {rate.high:.3f}]"
