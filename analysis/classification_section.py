@@ -141,7 +141,7 @@ def _paper_area(split: str) -> str:
 
 
 def mean_of_folds(values: Sequence[float], largest: float = 1.0) -> Rate:
-    """Mean over folds with its 95 % Student interval, cut off at 0 and `largest`; of one fold there is none."""
+    """Mean over folds with its 95 % Student interval, cut off at 0 and `largest`; none of one fold."""
     mean = float(np.mean(values))
     if len(values) < 2:
         return Rate(mean)
