@@ -23,7 +23,6 @@ SHOWN = {
     "detection_max_eval_64": "detection: max-eval, best of 64",
     "detection_grid": "detection: best of an exhaustive grid",
     "detection_random_1": "detection: one initial rectangle at random",
-    "detection_by_labels": "labels: a positive rectangle, judged by the others of its image",
 }
 PAPER = {
     "recognition_accuracy": "as Lenz et al. 2015: 93.7 %",

@@ -12,8 +12,9 @@ from preshape.evaluation.intervals import wilson
 def label_agreement(images: Iterable[CornellImage]) -> dict[str, dict[str, Any]]:
     """Share of labels that the other positives of their image make right, for `positives` and `negatives`.
 
-    Positives are what a perfect detector could return, so that their share is about what it would reach; a
-    positive that is alone in its image is left out. Negatives are what a detector must not return.
+    Where positives were drawn at random, as in `sim_cornell`, their share says how often a rectangle that
+    lifts is found right; where people chose different ones, it says little. A positive that is alone in its
+    image is left out. Negatives are what a detector must not return.
     """
     accepted: Counter[str] = Counter()
     tried: Counter[str] = Counter()

@@ -10,10 +10,8 @@ import pandas as pd
 
 from preshape.checkpoints import load_weights
 from preshape.cornell.data_module import CornellDataModule
-from preshape.cornell.data_set import CornellImage
 from preshape.cornell.detection import Detection, Detector
 from preshape.cornell.detection_rates import detection_rates
-from preshape.cornell.label_agreement import label_agreement
 from preshape.data.folds import FOLDS, SplitScheme
 from preshape.errors import InputError
 from preshape.evaluation.metrics import classification_metrics
@@ -39,13 +37,11 @@ class FoldOutcome:
         split: how its images were held out.
         predictions: labels and predicted probabilities of its test rectangles.
         detections: what was proposed for its test images.
-        images: these.
     """
 
     split: str
     predictions: pd.DataFrame
     detections: Sequence[Detection]
-    images: Sequence[CornellImage] = ()
 
 
 def evaluate_folds(group: Path, splits: Sequence[str], parts: Parts, detector: Detector) -> list[FoldOutcome]:
@@ -71,7 +67,7 @@ def evaluate_folds(group: Path, splits: Sequence[str], parts: Parts, detector: D
         content = {"detections": [own.to_dict() for own in detections]}
         write_json(folder / DETECTIONS_FILE, content)
         predictions = pd.read_parquet(folder / "predictions.parquet")
-        outcomes.append(FoldOutcome(split, predictions, detections, data.test_images))
+        outcomes.append(FoldOutcome(split, predictions, detections))
     return outcomes
 
 
@@ -127,17 +123,8 @@ def result_rows(name: str, outcomes: Sequence[FoldOutcome], seed: int) -> list[d
         if own:
             head = {"data": name, "folds": protocol}
             found = detection_rates([outcome.detections for outcome in own])
-            rows += [head | row for row in (*_recognition(own, seed), *found, *_ceiling(own))]
+            rows += [head | row for row in (*_recognition(own, seed), *found)]
     return rows
-
-
-def _ceiling(outcomes: Sequence[FoldOutcome]) -> list[dict[str, Any]]:
-    """How often a labelled positive rectangle is right by the others: about what detection could reach."""
-    found = label_agreement(image for outcome in outcomes for image in outcome.images)["positives"]
-    if not found["n"]:
-        return []
-    row = {"value": found["rate"], **{key: found[key] for key in ("low", "high", "n")}}
-    return [{"metric": "detection_by_labels", **row}]
 
 
 def _recognition(outcomes: Sequence[FoldOutcome], seed: int) -> list[dict[str, Any]]:

@@ -70,7 +70,7 @@ def test_parts_share_no_image_and_every_image_is_tested_once(root: Path, split: 
 
 
 def test_other_splits_are_refused(root: Path) -> None:
-    with pytest.raises(InputError, match="split=scenes, which is image-wise"):
+    with pytest.raises(InputError, match=r"split=scenes \(image-wise\)"):
         make_data(root, "seen").setup()
 
 
