@@ -75,13 +75,15 @@ def _nearest_camera(pixels: Float[np.ndarray, "n 2"], points: Float64[np.ndarray
     few = np.linspace(0, len(points) - 1, COARSE_POINTS).astype(int)
     best = None
     for start in _starts(pixels, points):
-        fit = least_squares(_misses, start, args=(pixels[few], points[few]), x_scale="jac", max_nfev=30)
+        fit = least_squares(
+            _misses, start, _slopes, method="lm", args=(pixels[few], points[few]), x_scale="jac", max_nfev=30
+        )
         best = fit if best is None or fit.cost < best.cost else best
         if best.cost < GOOD_COST:
             break
     assert best is not None
     start = best.x
-    fit = least_squares(_misses, start, args=(pixels, points), loss="soft_l1", x_scale="jac")
+    fit = least_squares(_misses, start, _slopes, args=(pixels, points), loss="soft_l1", x_scale="jac")
     T_camera_world = make_pose(Rotation.from_rotvec(fit.x[:3]).as_matrix(), fit.x[3:6])
     return _camera(_focal(fit.x), invert_pose(T_camera_world))
 
@@ -113,6 +115,43 @@ def _misses(
     seen = Rotation.from_rotvec(parameters[:3]).apply(points) + parameters[3:6]
     seen /= np.linalg.norm(seen, axis=1, keepdims=True) + 1e-12
     return np.append(NOMINAL_FOCAL_PX * (rays - seen).ravel(), FOCAL_WEIGHT * parameters[6])
+
+
+def _slopes(
+    parameters: Float64[np.ndarray, "7"], pixels: Float[np.ndarray, "n 2"], points: Float64[np.ndarray, "n 3"]
+) -> Float64[np.ndarray, "misses 7"]:
+    """Derivatives of `_misses` by the parameters."""
+    turned = Rotation.from_rotvec(parameters[:3]).apply(points)
+    seen = turned + parameters[3:6]
+    length = np.linalg.norm(seen, axis=1)[:, None, None] + 1e-12
+    unit = seen[:, :, None] / length
+    by_shift = (np.eye(3) - unit @ unit.swapaxes(1, 2)) / length
+    by_turn = -by_shift @ _cross(turned) @ _turn_of_rotvec(parameters[:3])
+    rays = _rays(pixels, _focal(parameters))
+    shrunk = rays * (-1, -1, 0) * (abs(parameters[6]) <= 1)
+    by_focal = shrunk - rays * (rays * shrunk).sum(axis=1, keepdims=True)
+    slopes = np.concatenate((-by_turn, -by_shift, by_focal[:, :, None]), axis=2).reshape(-1, 7)
+    last = np.array([[0, 0, 0, 0, 0, 0, FOCAL_WEIGHT]])
+    return np.concatenate((NOMINAL_FOCAL_PX * slopes, last))
+
+
+def _cross(vectors: Float64[np.ndarray, "*n 3"]) -> Float64[np.ndarray, "*n 3 3"]:
+    """Matrices C with C w = v x w for each vector v."""
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    zero = np.zeros_like(x)
+    return np.stack((zero, -z, y, z, zero, -x, -y, x, zero), axis=-1).reshape(*vectors.shape, 3)
+
+
+def _turn_of_rotvec(rotvec: Float64[np.ndarray, "3"]) -> Float64[np.ndarray, "3 3"]:
+    """What a small change of a rotation vector turns by: the left Jacobian of SO(3)."""
+    angle, cross = float(np.linalg.norm(rotvec)), _cross(rotvec)
+    if angle < 1e-6:
+        return np.eye(3) + cross / 2
+    return (
+        np.eye(3)
+        + (1 - np.cos(angle)) / angle**2 * cross
+        + (angle - np.sin(angle)) / angle**3 * cross @ cross
+    )
 
 
 def _focal(parameters: Float64[np.ndarray, "7"]) -> float:

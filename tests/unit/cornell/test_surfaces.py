@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from synthetic_cornell import BLOCK, BLOCK_M, MEASURED, TABLE_M, surface_points, write_cloud, write_cornell
 
+from preshape.cornell import cameras
 from preshape.cornell.cameras import fit_camera, nominal_camera
 from preshape.cornell.data_set import read_cornell
 from preshape.cornell.image_files import depth_from_range
@@ -122,6 +123,20 @@ class TestCamera:
         np.testing.assert_allclose(fitted.T_world_camera, camera.T_world_camera, atol=2e-3)
         expected = transform_points(invert_pose(camera.T_world_camera), points)[..., 2]
         np.testing.assert_allclose(depth, expected, atol=2e-3)
+
+    @pytest.mark.parametrize("turn", [0.0, 1.3])
+    def test_the_slopes_are_those_of_finite_differences(self, turn: float) -> None:
+        rng = np.random.default_rng(0)
+        pixels, points = rng.uniform(0, 480, (20, 2)), rng.normal(size=(20, 3))
+        parameters = np.array([turn, -0.4 * turn, 0.9 * turn, 0.3, -0.2, 0.8, 0.1])
+
+        def misses(step: np.ndarray) -> np.ndarray:
+            return np.asarray(cameras._misses(parameters + step, pixels, points))
+
+        steps = 1e-6 * np.eye(7)
+        expected = np.stack([(misses(own) - misses(-own)) / 2e-6 for own in steps], axis=1)
+        found = cameras._slopes(parameters, pixels, points)
+        np.testing.assert_allclose(found, expected, atol=1e-6 * np.abs(expected).max())
 
     def test_the_published_point_lies_on_its_pixel_for_the_nominal_camera(self) -> None:
         camera = nominal_camera()
