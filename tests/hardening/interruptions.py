@@ -12,7 +12,6 @@ import signal
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -25,7 +24,7 @@ from PIL import Image
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "fixtures")]
 
-from cases import Case, Commands  # noqa: E402
+from jobs import JOBS, Job  # noqa: E402
 from misuse import LIBRARIES, become, run_script  # noqa: E402
 from places import make_inputs  # noqa: E402
 
@@ -42,21 +41,6 @@ UNEQUAL = ("runtime_s", "date", "command", "git_revision", "versions", "seconds"
 ELSEWHERE = {"TZ": "Asia/Kathmandu", "LC_ALL": "C", "PYTHONUTF8": "0"}
 
 log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class Job:
-    """A command that can be started again.
-
-    Args:
-        name: for the table.
-        case: the command.
-        results: the files that it ends with, below the folder of the work.
-    """
-
-    name: str
-    case: Case
-    results: tuple[str, ...]
 
 
 @dataclass
@@ -93,67 +77,6 @@ def main() -> None:
         numbers = " | ".join(map(str, (*stopped, count.pairs, count.elsewhere)))
         log.info("| %s | %s | %s |", name, numbers, "; ".join(count.faults) or "nothing")
     sys.exit(any(count.faults for count in counts.values()))
-
-
-JOBS: dict[str, Callable[[Path, Path], Job]] = {}
-
-
-def job(name: str) -> Callable[[Callable[[Commands], tuple[Case, tuple[str, ...]]]], None]:
-    """Name a function that makes a command and the files that it ends with."""
-
-    def keep(make: Callable[[Commands], tuple[Case, tuple[str, ...]]]) -> None:
-        JOBS[name] = lambda inputs, work: Job(name, *make(Commands(inputs, work)))
-
-    return keep
-
-
-@job("train")
-def _train(commands: Commands) -> tuple[Case, tuple[str, ...]]:
-    longer = ("learning.settings.iterations=60", "trainer.batches_per_epoch=6")
-    folder = "outputs/train/palm_points"
-    files = (
-        "model.safetensors",
-        "model.safetensors.json",
-        "metrics.json",
-        "curves.json",
-        "predictions.parquet",
-    )
-    case = Case("", "src/train.py", (*commands.usual["src/train.py"], *longer))
-    return case, tuple(f"{folder}/{name}" for name in files)
-
-
-@job("plan")
-def _plan(commands: Commands) -> tuple[Case, tuple[str, ...]]:
-    output = f"output={commands.work / 'plan'}"
-    case = Case("", "src/plan.py", (*commands.usual["src/plan.py"], output))
-    return case, ("plan/grasps.json", "plan/grasps.png")
-
-
-@job("fit_prior")
-def _fit_prior(commands: Commands) -> tuple[Case, tuple[str, ...]]:
-    output = f"output={commands.work / 'prior.json'}"
-    return Case("", "src/fit_prior.py", (*commands.usual["src/fit_prior.py"], output)), ("prior.json",)
-
-
-@job("export")
-def _export(commands: Commands) -> tuple[Case, tuple[str, ...]]:
-    output = f"output={commands.work / 'network.onnx'}"
-    return Case("", "src/export.py", (*commands.usual["src/export.py"], output)), ("network.onnx",)
-
-
-@job("report of a data set")
-def _dataset(commands: Commands) -> tuple[Case, tuple[str, ...]]:
-    inputs = commands.inputs
-    given = {"data": inputs / "table", "families": inputs / "grocery.csv"}
-    arguments = commands.report("dataset", **given, sensitivity="null", label_check="null")
-    return Case("", "analysis/report.py", arguments), ("report/output",)
-
-
-@job("collect")
-def _collect(commands: Commands) -> tuple[Case, tuple[str, ...]]:
-    output = f"collect.output={commands.work / 'table'}"
-    case = Case("", "sim/collect.py", (*commands.usual["sim/collect.py"], "collect.trials=3", output))
-    return case, ("table/scenes.parquet", "table/trials.parquet")
 
 
 def disturb(name: str, inputs: Path, place: Path) -> Count:
