@@ -28,6 +28,7 @@ from preshape.data.scene import Scene
 from preshape.data.trial import Face, TrialOutcome
 from preshape.data.trial_table import SCALARS, THETAS, SceneTable, TableOrigin, TrialTable
 from preshape.errors import InputError
+from preshape.files import file_hash
 from preshape.geometry.camera import Camera
 from preshape.grasps.space import GraspSpace
 
@@ -176,11 +177,15 @@ def write_data_set(folder: str | Path, scenes: SceneTable, trials: TrialTable) -
 
 
 def data_hash(*folders: str | Path) -> str:
-    """Digest of the two files of each data set, by which a trained network names its data."""
+    """Digest of the two files of each data set, by which a trained network names its data.
+
+    Raises:
+        InputError: if one cannot be read.
+    """
     digest = hashlib.sha256()
     for folder in folders:
         for name in (SCENES_FILE, TRIALS_FILE):
-            digest.update(hashlib.sha256((Path(folder) / name).read_bytes()).digest())
+            digest.update(bytes.fromhex(file_hash(Path(folder) / name)))
     return digest.hexdigest()
 
 

@@ -197,3 +197,8 @@ def test_the_data_hash_follows_the_content(folder: Path, scenes: SceneTable) -> 
     assert tables.data_hash(folder) == before
     write_scenes(folder / "scenes.parquet", SceneTable(ORIGIN, scenes.scenes[:2]))
     assert tables.data_hash(folder) != before
+
+
+def test_the_hash_of_a_table_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="cannot be read"):
+        data_hash(tmp_path)
