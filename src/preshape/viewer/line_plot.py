@@ -40,9 +40,7 @@ class LinePlot:
     ) -> None:
         self._x: Float[np.ndarray, "n"] = np.zeros(1)
         self._values: Float[np.ndarray, "k n"] = np.full((len(lines), 1), np.nan)
-        scales: dict[str, uplot.Scale] = {"x": uplot.Scale(time=False)}
-        if y_range is not None:
-            scales["y"] = uplot.Scale(range=y_range)
+        self._y_range = y_range
         series = [
             uplot.Series(label=line.label, stroke=line.colour, width=2, dash=line.dash) for line in lines
         ]
@@ -51,7 +49,7 @@ class LinePlot:
         self._handle: GuiUplotHandle = gui.add_uplot(
             self._data(0),
             (uplot.Series(label=x_label), *series, mark),
-            scales=scales,
+            scales=self._scales(),
             legend=uplot.Legend(show=len(lines) > 1),
             height=150,
         )
@@ -64,11 +62,22 @@ class LinePlot:
     def show(self, x: Float[np.ndarray, "n"], values: Float[np.ndarray, "k n"]) -> None:
         """Show other lines, with the mark at their beginning."""
         self._x, self._values = x, values
+        self._handle.scales = self._scales()
         self.mark(0)
 
     def mark(self, place: int) -> None:
         """Move the mark."""
         self._handle.data = self._data(place)
+
+    def _scales(self) -> dict[str, uplot.Scale]:
+        """The axes' limits. Left to itself, uPlot finds none where a value is NaN."""
+        known = self._values[np.isfinite(self._values)]
+        low, high = (float(known.min()), float(known.max())) if len(known) else (0.0, 1.0)
+        margin = max(0.05 * (high - low), 0.5)
+        y_range = self._y_range or (low - margin, high + margin)
+        first, last = float(self._x[0]), float(self._x[-1])
+        x_range = (first, last if last > first else first + 1)
+        return {"x": uplot.Scale(time=False, range=x_range), "y": uplot.Scale(range=y_range)}
 
     def _data(self, place: int) -> tuple[np.ndarray, ...]:
         mark = np.full(len(self._x), np.nan)

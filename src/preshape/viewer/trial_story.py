@@ -61,7 +61,11 @@ def _lift(recording: TrialRecording) -> str:
         return f"lift: the hand does not touch the object again; it rises {risen_cm:.1f} cm"
     if after[-1] == last:
         _, parts = recording.contacts_at(last)
-        return f"lift: the object rises {risen_cm:.1f} cm and is touched by {', '.join(parts)} at the end"
+        palm_cm, end_cm = 100 * recording.palm_rise_m[last], 100 * recording.object_rise_m[last]
+        return (
+            f"lift: the palm rises {palm_cm:.1f} cm, the object {risen_cm:.1f} cm at most; it ends "
+            f"{end_cm:.1f} cm up, touched by {', '.join(parts)}"
+        )
     lost_s, phase = recording.times_s[after[-1]], recording.phases[after[-1]]
     return f"lift: the object rises {risen_cm:.1f} cm at most and slips away at {lost_s:.1f} s ({phase})"
 
