@@ -12,7 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from synthetic_cornell import POSITIVE, write_cornell, write_image, write_objects
 
-from preshape.cornell.data_set import read_cornell
+from preshape.cornell.data_set import CornellDataSet, read_cornell
 from preshape.cornell.object_list import Subject
 from preshape.cornell.rectangle import GraspRectangle
 from preshape.cornell.rectangle_files import Flaw, read_rectangles
@@ -47,6 +47,14 @@ def replace(path: Path, content: bytes | str) -> None:
 def load_all(root: Path) -> None:
     for image in read_cornell(root).images:
         load_cornell_view(image.files)
+
+
+def read_or_refused(root: Path) -> CornellDataSet | str:
+    """The data set, or what the error says."""
+    try:
+        return read_cornell(root)
+    except InputError as refusal:
+        return str(refusal)
 
 
 class TestLayout:
@@ -171,6 +179,23 @@ class TestDamage:
         replace(root / name, content[: int(share * len(content))])
         with pytest.raises(InputError, match=Path(name).name):
             load_all(root)
+
+    @pytest.mark.parametrize("name", ["01/pcd0101cpos.txt", "01/pcd0101cneg.txt", "processedData/z.txt"])
+    def test_labels_may_be_truncated_anywhere(self, root: Path, name: str) -> None:
+        content, whole = (root / name).read_bytes(), read_cornell(root)
+        for length in range(0, len(content), 3):
+            replace(root / name, content[:length])
+            read = read_or_refused(root)
+            if isinstance(read, str):
+                assert Path(name).name in read
+                continue
+            # never another rectangle or object than before; a lost one is counted, unless the file is empty
+            assert read.objects == whole.objects
+            for own, before in zip(read.images, whole.images, strict=True):
+                assert set(own.positives) <= set(before.positives)
+                assert set(own.negatives) <= set(before.negatives)
+            kept = sum(len(own.positives) + len(own.negatives) for own in read.images)
+            assert kept + sum(read.dropped.values()) == 4 or length == 0
 
     def test_rectangles_may_be_truncated_anywhere(self, tmp_path: Path) -> None:
         path = tmp_path / "pcd0100cpos.txt"
