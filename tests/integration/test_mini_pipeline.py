@@ -58,7 +58,8 @@ def stages_run(output: str) -> set[str]:
     return {line.split("'")[1].removeprefix(f"{PIPELINE}:") for line in begun}
 
 
-@pytest.mark.timeout(900)
+@pytest.mark.slow
+@pytest.mark.timeout(1800)
 def test_the_miniature_runs_goes_on_and_knows_what_changed(copy: Path) -> None:
     process = start(copy)
     assert process.stdout is not None
