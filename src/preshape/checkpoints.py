@@ -142,9 +142,18 @@ def _read_sidecar(weights: Path) -> Sidecar:
         raise InputError("The sidecar is not of a version that this code reads", where=path, fix=RETRAIN)
     texts = ("model", "grasp_space", "data_hash", "git_revision", "weights_sha256")
     expected = {*texts, "image_mean", "image_std", "metrics"}
-    if set(content) != expected or not all(isinstance(content[key], str) for key in texts):
+    if (
+        set(content) != expected
+        or not all(isinstance(content[key], str) for key in texts)
+        or not all(_is_numbers(content[key]) for key in ("image_mean", "image_std"))
+        or not isinstance(content["metrics"], dict)
+    ):
         raise InputError("The sidecar does not describe weights of a network", where=path, fix=RETRAIN)
     return Sidecar(**content)
+
+
+def _is_numbers(value: Any) -> bool:
+    return isinstance(value, list) and all(isinstance(entry, float) for entry in value)
 
 
 def _parse(content: bytes, path: Path) -> dict[str, Tensor]:

@@ -102,7 +102,7 @@ def check_values(cfg: DictConfig) -> None:
 
 def _leaves(node: DictConfig, prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Full names and values of all settings but lists, references to others, and what is not given yet."""
-    for key in node:
+    for key in map(str, node):
         if OmegaConf.is_missing(node, key) or OmegaConf.is_interpolation(node, key):
             continue
         value = node[key]
@@ -123,7 +123,7 @@ def _check_kinds(cfg: DictConfig) -> None:
     ]
     if not values:
         return
-    before = compose(hydra.job.config_name, [own.input_line for own in overrides if own not in values])
+    before = compose(hydra.job.config_name, [str(own.input_line) for own in overrides if own not in values])
     for own in values:
         default, value = (_found(node, own.key_or_group) for node in (before, cfg))
         kinds, said = next(((kinds, said) for kinds, said in KINDS if _is(default, kinds)), ((object,), ""))

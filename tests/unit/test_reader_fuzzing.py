@@ -146,7 +146,12 @@ READERS = (
         )
         for name in ("scenes", "trials")
     ),
-    Reader("model.safetensors.json", read_weights, damaged_json_text),
+    Reader(
+        "model.safetensors.json",
+        read_weights,
+        damaged_json_text,
+        known=(lambda good: good.replace(b'"image_mean": [', b'"image_mean": ["x",'),),
+    ),
     Reader("model.safetensors", read_weights_whatever_their_digest, damaged_safetensors),
     of_file("prior.json", read_prior, damaged_json_text),
     of_file("prior.safetensors", read_prior, damaged_safetensors),
