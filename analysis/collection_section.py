@@ -1,6 +1,8 @@
 """The report's section about the trials, beside those of the paper."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from analysis.planning_tables import share
 from analysis.report_blocks import Block, Cell, Missing, Picture, Section, Table
@@ -67,18 +69,7 @@ def _counts(results: ResultFiles) -> Block:
         ),
     ]
     if collection is not None:
-        looked = f"{collection['label_disagreements']} of {collection['labels_looked_at']}"
-        again = f"{collection['flips_under_repeated_seeds']} of {collection['repeated_with_the_same_seed']}"
-        speed = collection["speed"]
-        rows += [
-            (
-                f"executed trials an hour, {speed['workers']} workers",
-                f"{speed['executed_per_hour']:,.0f} (n = {speed['executed']})",
-                Cell("–", "paper"),
-            ),
-            ("pictures that contradict their label", looked, Cell("–", "paper")),
-            ("labels that differ when repeated with their seed", again, Cell("–", "paper")),
-        ]
+        rows += _labelling(collection)
     return Table(
         "trials",
         "The trials",
@@ -88,6 +79,22 @@ def _counts(results: ResultFiles) -> Block:
         "Section 4.1, text",
         "Intervals are 95 % Wilson; the paper gives counts, from which its interval was computed.",
     )
+
+
+def _labelling(collection: Mapping[str, Any]) -> list[tuple[str, str, Cell]]:
+    """How fast trials are labelled, and how sure the labels are."""
+    looked = f"{collection['label_disagreements']} of {collection['labels_looked_at']}"
+    again = f"{collection['flips_under_repeated_seeds']} of {collection['repeated_with_the_same_seed']}"
+    speed = collection["speed"]
+    return [
+        (
+            f"executed trials an hour, {speed['workers']} workers",
+            f"{speed['executed_per_hour']:,.0f} (n = {speed['executed']})",
+            Cell("–", "paper"),
+        ),
+        ("pictures that contradict their label", looked, Cell("–", "paper")),
+        ("labels that differ when repeated with their seed", again, Cell("–", "paper")),
+    ]
 
 
 def _faces(results: ResultFiles) -> list[Block]:

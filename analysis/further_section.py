@@ -87,11 +87,19 @@ def _calibration(runs: Sequence[Run]) -> list[Block]:
         return []
     panels = {f"{run['condition']}, n = {run['executed']}": run["reliability"] for run in inferred}
     note = (
-        "Predicted probability at the planned grasp against the share that lifted, in ten bins; "
-        "the area of a mark "
-        "is its share of the grasps. The paper found its network “over confident” with the gripper."
+        "Predicted probability at the planned grasp against the share that lifted, in ten bins; the area of "
+        "a mark is its share of the grasps. The paper found its network “over confident” with the gripper."
     )
     words = "Reliability diagrams of inference in each condition"
+    return [
+        Chart(
+            "reliability", "How sure inference is", reliability_panels(panels), words, ["planning"], note=note
+        ),
+        _gaps(inferred),
+    ]
+
+
+def _gaps(inferred: Sequence[Run]) -> Table:
     rows: list[Row] = []
     for run in inferred:
         said = run["reliability"]["predicted_as_planned"]
@@ -116,12 +124,7 @@ def _calibration(runs: Sequence[Run]) -> list[Block]:
         "Intervals are 95 % bootstrap over grasps; the temperature was fitted to the other half of the "
         "scenes."
     )
-    return [
-        Chart(
-            "reliability", "How sure inference is", reliability_panels(panels), words, ["planning"], note=note
-        ),
-        Table("gaps", "The same in numbers", header, rows, ["planning"], note=table_note),
-    ]
+    return Table("gaps", "The same in numbers", header, rows, ["planning"], note=table_note)
 
 
 def _rounds(rounds: Sequence[Mapping[str, Any]]) -> list[Block]:
