@@ -139,8 +139,9 @@ def _cross(vectors: Float64[np.ndarray, "*n 3"]) -> Float64[np.ndarray, "*n 3 3"
     """Matrices C with C w = v x w for each vector v."""
     x, y, z = np.moveaxis(vectors, -1, 0)
     zero = np.zeros_like(x)
-    rows: Float64[np.ndarray, "*n 9"] = np.stack((zero, -z, y, z, zero, -x, -y, x, zero), axis=-1)
-    return rows.reshape(*vectors.shape, 3)
+    rows = np.stack((zero, -z, y, z, zero, -x, -y, x, zero), axis=-1)
+    matrices: Float64[np.ndarray, "*n 3 3"] = rows.reshape(*vectors.shape, 3)
+    return matrices
 
 
 def _turn_of_rotvec(rotvec: Float64[np.ndarray, "3"]) -> Float64[np.ndarray, "3 3"]:
