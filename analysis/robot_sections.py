@@ -25,8 +25,8 @@ REAL_ROBOT = Missing(
 NO_GRIPPER = Missing(
     "Two-finger grasps, executed",
     [
-        "python src/train.py model=patches_cnn dataset=sim_cornell split=unseen run_name=gripper",
-        "python sim/evaluate_rectangles.py weights=outputs/train/gripper/model.safetensors",
+        "python src/train.py experiment=two_finger_unseen",
+        "python sim/evaluate.py experiment=two_finger",
         "python analysis/report.py report=gripper robot=baxter",
     ],
     "10 objects in 3 poses each on a real Baxter: initial rectangles 40 %, inference 84 %; "

@@ -84,7 +84,6 @@ class Commands:
             "sim/contact_sheet.py": (*places,),
             "sim/last_frames.py": (*places, "trials=1", "workers=1", f"result={work / 'label_check.json'}"),
             "sim/write_cornell.py": (*places, f"output={work / 'written'}", "maker.workers=1"),
-            "sim/evaluate_rectangles.py": (*places, weights, "evaluate.scenes=1", "evaluate.workers=1"),
             "analysis/report.py": (*places,),
         }
 

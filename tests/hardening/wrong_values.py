@@ -125,6 +125,5 @@ WRONG_VALUES = {
         "maker.workers=0",
         "robot=lbr4_allegro",
     ),
-    "sim/evaluate_rectangles.py": ("model=palm_points", "robot=lbr4_allegro", "evaluate.scenes=x"),
 }
 """Values of a wrong type, out of range, or that do not fit together."""
