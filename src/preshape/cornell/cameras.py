@@ -149,11 +149,12 @@ def _turn_of_rotvec(rotvec: Float64[np.ndarray, "3"]) -> Float64[np.ndarray, "3 
     angle, cross = float(np.linalg.norm(rotvec)), _cross(rotvec)
     if angle < 1e-6:
         return np.eye(3) + cross / 2
-    return (
+    turn: Float64[np.ndarray, "3 3"] = (
         np.eye(3)
         + (1 - np.cos(angle)) / angle**2 * cross
         + (angle - np.sin(angle)) / angle**3 * cross @ cross
     )
+    return turn
 
 
 def _focal(parameters: Float64[np.ndarray, "7"]) -> float:
