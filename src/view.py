@@ -6,6 +6,7 @@ import numpy as np
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
+from preshape.configured_planner import planner_of
 from preshape.data.tables import read_data_set
 from preshape.entry_point import entry_point
 from preshape.perception.view_choice import load_chosen_view
@@ -23,9 +24,7 @@ def main(cfg: DictConfig) -> None:
     wants_plan = is_saved or cfg.weights is not None
     Request(cfg.robot.name, cfg.robot.description is not None, plans, wants_plan).check()
     view = load_chosen_view(*files) if is_saved else None
-    robot, planner = instantiate(cfg.robot.description), instantiate(cfg.view_planner) if plans else None
-    if planner is not None and cfg.weights is not None:
-        planner = planner.with_network(instantiate(cfg.model), cfg.weights)
+    robot, planner = instantiate(cfg.robot.description), planner_of(cfg) if plans else None
     if view is not None and planner is not None:
         plan = planner.plan(view, np.random.default_rng(cfg.seed))
         build = partial(SavedViewSession, robot=robot, observation=view, plan=plan)

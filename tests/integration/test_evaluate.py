@@ -48,6 +48,7 @@ def test_planners_compete_on_one_scene_and_a_page_shows_it(tmp_path: Path, alleg
     shown = run(
         tmp_path,
         "analysis/report.py",
+        "report=demo",
         *(f"report.evaluation={folder}", "report.metrics=null", f"report.output={page}"),
     )
     assert shown.returncode == 0, shown.stderr

@@ -13,7 +13,7 @@ from preshape.data.trial_table import SceneTable, TrialTable
 from preshape.errors import InputError
 from preshape.geometry.pose import transform_points
 from preshape.grasps.heuristic import InitialGrasp
-from preshape.planning.view_planner import ViewPlanner
+from preshape.planning.grasp_planner import GraspPlanner
 from preshape.viewer.climb_panel import NO_PLAN, ClimbPanel
 from preshape.viewer.grasp_scene import GraspScene
 from preshape.viewer.input_values import set_value
@@ -46,7 +46,7 @@ class TrialParts:
     scenes: SceneTable
     trials: TrialTable
     stage: TrialStage
-    planner: ViewPlanner | None
+    planner: GraspPlanner | None
 
 
 class TrialSession:

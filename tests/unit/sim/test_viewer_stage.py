@@ -11,6 +11,7 @@ from hydra.utils import instantiate
 from viser import ViserServer
 
 import preshape.entry_point  # noqa: F401 - registers what the configuration refers to
+from preshape.configured_planner import planner_of
 from preshape.data.scene import Scene
 from preshape.data.trial import Face, Trial, TrialOutcome
 from preshape.data.trial_table import SceneTable, TrialTable
@@ -56,7 +57,7 @@ def parts(tmp_path_factory: pytest.TempPathFactory) -> TrialParts:
     laboratory = stage.laboratory
     table = TrialTable.from_trials(trials, laboratory.space, laboratory.origin)
     scene_table = SceneTable(laboratory.origin, tuple(scenes))
-    planner = instantiate(cfg.view_planner)
+    planner = planner_of(cfg)
     return TrialParts(laboratory.runner.robot, scene_table, table, stage, planner)
 
 

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from hydra.utils import instantiate
 from omegaconf import DictConfig
 from viser import ViserServer
 
+from preshape.configured_planner import planner_of
 from preshape.geometry.pose import pose_from_quaternion
 from preshape.hands.allegro import allegro_hand
 from preshape.models.palm_points import PalmPoints
@@ -32,7 +32,7 @@ def observation(table_top: Any) -> Observation:
 @pytest.fixture(scope="module")
 def plan(view_config: DictConfig, observation: Observation) -> GraspPlan:
     torch.manual_seed(0)
-    planner = instantiate(view_config.view_planner)
+    planner = planner_of(view_config)
     network = PalmPoints("palm_points", "allegro_palm14", 14, points=16, width=4)
     return replace(planner, model=network).plan(observation, np.random.default_rng(0))
 
