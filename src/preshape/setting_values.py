@@ -16,9 +16,7 @@ from preshape.errors import InputError
 LEAST = {
     **dict.fromkeys(("seed", "acquired_seed", "fold", "shard", "min_positives", "max_iterations"), 0),
     **dict.fromkeys(("explored", "repeats", "filmed_scenes", "margin_px", "max_halvings"), 0),
-    **dict.fromkeys(
-        ("workers", "trials", "trials_learned", "scenes", "block", "poses_per_object", "kills"), 1
-    ),
+    **dict.fromkeys(("workers", "trials", "trials_learned", "scenes", "block", "poses_per_object"), 1),
     **dict.fromkeys(
         ("kills", "kills_per_table", "iterations", "batch_size", "batches_per_epoch", "members"), 1
     ),
