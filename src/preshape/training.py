@@ -211,6 +211,7 @@ def _identity(model: GraspNetwork, data: LabelledData, settings: TrainerSettings
     digest = hashlib.sha256(save({name: value.contiguous() for name, value in model.state_dict().items()}))
     digest.update(repr((settings, data.batches, data.data_hash)).encode())
     digest.update(data.train.trials.rows["trial_id"].to_numpy().tobytes())
+    digest.update(data.train.labels.numpy().tobytes())
     return digest.hexdigest()[:16]
 
 

@@ -1,6 +1,7 @@
 """From a folder of labelled grasps to the batches of a network."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import reduce
 from pathlib import Path
 
@@ -32,6 +33,8 @@ class GraspDataModule(LabelledData):
         trials: how many executed trials are used, from the first of the table on; None for all.
         trials_learned: learn as if so many were used: of the trials for training and for validation random
             ones are left out, the test trials stay; None for none. A smaller number keeps some of a larger's.
+        soft_labels: learn, where trials were repeated, from the share of repetitions that lifted. Tests and
+            validation ask whether the trial itself lifted.
     """
 
     train: GraspDataset
@@ -50,13 +53,14 @@ class GraspDataModule(LabelledData):
         added: Sequence[str | Path] = (),
         trials: int | None = None,
         trials_learned: int | None = None,
+        soft_labels: bool = False,
     ) -> None:
         super().__init__()
         self._folders = tuple(Path(one) for one in (folder, *added))
         self._origin, self._space = origin, space
         self._views = views
         self._hold_out, self.batches, self._wanted = hold_out, batches, trials
-        self._learned = trials_learned
+        self._learned, self._soft_labels = trials_learned, soft_labels
 
     def setup(self, stage: str | None = None) -> None:
         """Read the tables and split them; does nothing the second time.
@@ -76,6 +80,9 @@ class GraspDataModule(LabelledData):
 
         learned = (self._thinned(rows, len(executed)) for rows in (split.train, split.validation))
         self.train, self.validation, self.test = (part(rows) for rows in (*learned, split.test))
+        if self._soft_labels:
+            self._check_soft_labels()
+            self.train = replace(self.train, soft_labels=True)
         self.data_hash = data_hash(*self._folders)
 
     def _read(self, folder: Path) -> tuple[SceneTable, TrialTable]:
@@ -104,6 +111,14 @@ class GraspDataModule(LabelledData):
                 fix=f"set dataset.data.{setting} to at most as many, or to null for all",
             )
 
+    def _check_soft_labels(self) -> None:
+        if np.isnan(self.train.trials.soft_labels).all():
+            raise InputError(
+                "No trial to learn from was repeated, so none has a soft label",
+                where=", ".join(map(str, self._folders)),
+                fix="collect trials with collect.repeats=5, or set dataset.data.soft_labels=false",
+            )
+
     def keep_lifted(self) -> None:
         """Leave out the trials that failed, for networks that learn from successes alone.
 
@@ -129,4 +144,4 @@ class GraspDataModule(LabelledData):
         scenes = {scene.scene_id: scene for part in parts for scene in part.scenes}
         self._views.fill(list(scenes.values()), with_patches=with_patches)
         if not with_patches:
-            self.train, self.validation, self.test = (part.without_patches() for part in parts)
+            self.train, self.validation, self.test = (replace(part, with_patches=False) for part in parts)

@@ -36,15 +36,19 @@ class BatchSettings:
 
 @runtime_checkable
 class Examples(Protocol):
-    """Executed trials as examples for a network.
+    """Executed trials as examples for a network."""
 
-    Attributes:
-        trials: the trials.
-        theta: their grasps.
-    """
+    @property
+    def trials(self) -> TrialTable:
+        """The trials."""
 
-    trials: TrialTable
-    theta: Float[Tensor, "n d"]
+    @property
+    def theta(self) -> Float[Tensor, "n d"]:
+        """Their grasps."""
+
+    @property
+    def labels(self) -> Float[Tensor, "n"]:
+        """How probably each of them lifts, as far as is known: 0, 1, or the share of repetitions."""
 
     def __len__(self) -> int: ...
 

@@ -121,6 +121,11 @@ class TrialTable:
         return (self.rows["outcome"] == TrialOutcome.LIFTED.value).to_numpy(dtype=bool, copy=True)
 
     @property
+    def soft_labels(self) -> Float[np.ndarray, "n"]:
+        """Share of LIFTED among the repetitions of each trial; NaN where it was not repeated."""
+        return self.rows["soft_label"].to_numpy(dtype=float)
+
+    @property
     def scene_ids(self) -> Int[np.ndarray, "n"]:
         """Number of each trial's scene."""
         return self.rows["scene_id"].to_numpy(dtype=np.int64)

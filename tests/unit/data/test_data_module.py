@@ -1,5 +1,7 @@
 """From a folder to batches."""
 
+import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +11,7 @@ from synthetic_scenes import ORIGIN, SIZES_M, BoxRenderer, allegro_space, write_
 
 from preshape.data.data_module import BatchSettings, GraspDataModule
 from preshape.data.folds import HoldOut
-from preshape.data.tables import read_scenes, read_trials
+from preshape.data.tables import SCENES_FILE, TRIALS_FILE, read_scenes, read_trials, write_trials
 from preshape.data.trial_table import TableOrigin
 from preshape.data.view_cache import ViewCache
 from preshape.errors import InputError
@@ -25,7 +27,12 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def make_module(
-    folder: Path, origin: TableOrigin = ORIGIN, trials: int | None = None, added: tuple[Path, ...] = ()
+    folder: Path,
+    origin: TableOrigin = ORIGIN,
+    trials: int | None = None,
+    added: tuple[Path, ...] = (),
+    *,
+    soft_labels: bool = False,
 ) -> GraspDataModule:
     return GraspDataModule(
         folder=folder,
@@ -36,6 +43,7 @@ def make_module(
         batches=BatchSettings(batch_size=4, min_positives=1, batches_per_epoch=5, seed=0),
         added=added,
         trials=trials,
+        soft_labels=soft_labels,
     )
 
 
@@ -114,6 +122,25 @@ def test_views_may_come_without_patches(folder: Path) -> None:
     without, *_ = data.test_dataloader()
     assert without.view.patch.shape == (len(batch.label), 8, 0, 0)
     assert all(torch.equal(one, other) for one, other in zip(without.view[1:], batch.view[1:], strict=True))
+
+
+def test_soft_labels_are_learned_from_and_not_tested_with(folder: Path, tmp_path: Path) -> None:
+    table = read_trials(folder / TRIALS_FILE, allegro_space())
+    soft = np.where(np.arange(len(table)) % 2, np.nan, 0.6)
+    shutil.copy(folder / SCENES_FILE, tmp_path)
+    write_trials(tmp_path / TRIALS_FILE, replace(table, rows=table.rows.assign(soft_label=soft)))
+    data = make_module(tmp_path, soft_labels=True)
+    data.setup()
+    known = data.train.trials.soft_labels
+    expected = np.where(np.isnan(known), data.train.trials.lifted, known)
+    assert 0 < np.isnan(known).sum() < len(known)
+    assert data.train.labels.numpy() == pytest.approx(expected)
+    assert data.test.labels.bool().tolist() == data.test.trials.lifted.tolist()
+
+
+def test_soft_labels_that_no_trial_has_are_refused(folder: Path) -> None:
+    with pytest.raises(InputError, match=r"collect\.repeats"):
+        make_module(folder, soft_labels=True).setup()
 
 
 def test_a_table_collected_with_something_else_is_refused(folder: Path) -> None:
