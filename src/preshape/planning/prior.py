@@ -6,13 +6,11 @@ from pathlib import Path
 import numpy as np
 import torch
 from jaxtyping import Float, Float64
-from sklearn.mixture import GaussianMixture
 from torch import Tensor
 
 from preshape.errors import InputError
 from preshape.files import read_json, write_json
 from preshape.geometry.pose import rotation_from_euler_xyz
-from preshape.grasps.space import GraspSpace
 from preshape.perception.view_batch import ViewBatch
 from preshape.planning.objective import Evaluation, Objective
 
@@ -59,32 +57,6 @@ class GraspPrior:
     log_weights: Float64[Tensor, "m"]
     means: Float64[Tensor, "m e"]
     precisions: Float64[Tensor, "m e e"]
-
-    @classmethod
-    def fitted(
-        cls,
-        theta: Float64[np.ndarray, "n d"],
-        T_camera_box: Float64[np.ndarray, "n 4 4"],
-        space: GraspSpace,
-        *,
-        components: int,
-        seed: int,
-    ) -> "GraspPrior":
-        """The mixture that fits given grasps best, each with the box of its own object.
-
-        Raises:
-            InputError: if there are fewer grasps than distributions.
-        """
-        if len(theta) < components:
-            raise InputError(
-                f"{len(theta)} grasps cannot make a mixture of {components} distributions",
-                where="components of the prior",
-                fix="choose fewer, or a larger data set",
-            )
-        features = in_box(torch.from_numpy(theta), torch.from_numpy(T_camera_box)).numpy()
-        mixture = GaussianMixture(components, reg_covar=MIN_VARIANCE, random_state=seed).fit(features)
-        parts = (np.log(mixture.weights_), mixture.means_, mixture.precisions_cholesky_)
-        return cls(space.name, *(torch.from_numpy(part) for part in parts))
 
     def log_density(
         self, theta: Float64[Tensor, "s d"], T_camera_box: Float64[Tensor, "#s 4 4"]

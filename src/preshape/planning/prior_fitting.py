@@ -4,11 +4,14 @@ import logging
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
 import torch
-from jaxtyping import Float32
+from jaxtyping import Float32, Float64
+from sklearn.mixture import GaussianMixture
 from torch import Tensor
 
 from preshape.data.grasp_dataset import GraspBatch
+from preshape.errors import InputError
 from preshape.grasps.space import GraspSpace
 from preshape.models.one_cycle import one_cycle
 from preshape.planning.mixture_density_network import (
@@ -17,7 +20,7 @@ from preshape.planning.mixture_density_network import (
     features_in_box,
     points_in_box,
 )
-from preshape.planning.prior import GraspPrior
+from preshape.planning.prior import MIN_VARIANCE, GraspPrior, in_box
 from preshape.planning.threads import one_thread
 from preshape.progress import Progress
 
@@ -56,9 +59,9 @@ class MixtureFit:
 
     def fitted(self, train: GraspBatch, held_out: GraspBatch | None, space: GraspSpace) -> GraspPrior:
         """See `PriorFit`."""
-        prior = GraspPrior.fitted(
-            train.theta.double().numpy(),
-            train.view.T_camera_box.double().numpy(),
+        prior = fit_mixture(
+            train.theta.double(),
+            train.view.T_camera_box.double(),
             space,
             components=self.components,
             seed=self.seed,
@@ -163,6 +166,31 @@ class _Examples:
 
     def mean_log_density(self, network: MixtureDensityNetwork) -> Float32[Tensor, ""]:
         return network.log_density(self.features, self.points).mean()
+
+
+def fit_mixture(
+    theta: Float64[Tensor, "n d"],
+    T_camera_box: Float64[Tensor, "n 4 4"],
+    space: GraspSpace,
+    *,
+    components: int,
+    seed: int,
+) -> GraspPrior:
+    """The Gaussian mixture that fits given grasps best, each with the box of its own object.
+
+    Raises:
+        InputError: if there are fewer grasps than distributions.
+    """
+    if len(theta) < components:
+        raise InputError(
+            f"{len(theta)} grasps cannot make a mixture of {components} distributions",
+            where="components of the prior",
+            fix="choose fewer, or a larger data set",
+        )
+    features = in_box(theta, T_camera_box).numpy()
+    mixture = GaussianMixture(components, reg_covar=MIN_VARIANCE, random_state=seed).fit(features)
+    parts = (np.log(mixture.weights_), mixture.means_, mixture.precisions_cholesky_)
+    return GraspPrior(space.name, *(torch.from_numpy(part) for part in parts))
 
 
 def _mean_log_density(prior: GraspPrior, grasps: GraspBatch) -> float:

@@ -7,6 +7,7 @@ import pytest
 import torch
 from analytic_objectives import quadratic
 from scipy.spatial.transform import Rotation
+from sklearn.mixture import GaussianMixture
 from synthetic_views import view_of
 
 from preshape.errors import InputError
@@ -16,8 +17,9 @@ from preshape.grasps.space import GraspSpace
 from preshape.planning.bounds import Bounds, BoxSize
 from preshape.planning.gradient_ascent import GradientAscent
 from preshape.planning.line_search import LineSearch
-from preshape.planning.prior import GraspPrior, PriorObjective
+from preshape.planning.prior import MIN_VARIANCE, GraspPrior, PriorObjective, in_box
 from preshape.planning.prior_choice import PriorChoice
+from preshape.planning.prior_fitting import fit_mixture
 
 SPACE = GraspSpace.palm_and_joints("test", {f"joint_{k}": (-0.5, 0.5) for k in range(2)})
 PLANNER = GradientAscent(LineSearch(0.25, growth=2.0, max_step=1.0), tolerance=1e-5, patience=5)
@@ -28,7 +30,7 @@ def pose(seed: int) -> np.ndarray:
     return make_pose(Rotation.random(random_state=seed).as_matrix(), rng.normal(size=3))
 
 
-def grasps(count: int) -> tuple[np.ndarray, np.ndarray]:
+def grasps(count: int) -> tuple[torch.Tensor, torch.Tensor]:
     """Grasps that scatter about one pose in the frames of boxes that lie anywhere."""
     rng = np.random.default_rng(0)
     boxes = np.stack([pose(seed) for seed in range(count)])
@@ -37,12 +39,12 @@ def grasps(count: int) -> tuple[np.ndarray, np.ndarray]:
     theta = [
         SPACE.theta(box @ palm, rng.normal(0.2, 0.01, 2)) for box, palm in zip(boxes, local, strict=True)
     ]
-    return np.stack(theta), boxes
+    return torch.from_numpy(np.stack(theta)), torch.from_numpy(boxes)
 
 
 @pytest.fixture(scope="module")
 def prior() -> GraspPrior:
-    return GraspPrior.fitted(*grasps(60), SPACE, components=1, seed=0)
+    return fit_mixture(*grasps(60), SPACE, components=1, seed=0)
 
 
 def start(box: np.ndarray) -> tuple[np.ndarray, np.ndarray, Bounds]:
@@ -75,10 +77,14 @@ def test_weight_zero_is_the_likelihood(prior: GraspPrior, tmp_path: Path) -> Non
 
 def test_the_density_is_that_of_scikit_learn_and_differentiable(tmp_path: Path) -> None:
     theta, boxes = grasps(40)
-    prior = GraspPrior.fitted(theta, boxes, SPACE, components=3, seed=0)
+    prior = fit_mixture(theta, boxes, SPACE, components=3, seed=0)
     prior.write(tmp_path / "prior.json")
     again = GraspPrior.read(tmp_path / "prior.json")
-    box, leaf = torch.from_numpy(boxes[:1]), torch.from_numpy(theta[:2]).requires_grad_()
+    features = in_box(theta, boxes).numpy()
+    judge = GaussianMixture(3, reg_covar=MIN_VARIANCE, random_state=0).fit(features)
+    constant = prior.log_density(theta, boxes).numpy() - judge.score_samples(features)
+    assert constant == pytest.approx(constant[0])
+    box, leaf = boxes[:1], theta[:2].clone().requires_grad_()
     assert torch.equal(prior.log_density(leaf, box), again.log_density(leaf, box))
     assert torch.autograd.gradcheck(lambda theta: again.log_density(theta, box), leaf)
 
@@ -99,4 +105,4 @@ def test_what_is_no_prior_is_refused(prior: GraspPrior, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no file"):
         PriorChoice(weight=1.0)
     with pytest.raises(InputError, match="cannot make"):
-        GraspPrior.fitted(*grasps(2), SPACE, components=3, seed=0)
+        fit_mixture(*grasps(2), SPACE, components=3, seed=0)
