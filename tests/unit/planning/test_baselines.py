@@ -1,10 +1,14 @@
 import numpy as np
 import pytest
-from analytic_objectives import quadratic
+import torch
+from analytic_objectives import AnalyticObjective, quadratic
 
 from preshape.planning.bounds import Bounds
+from preshape.planning.gradient_ascent import GradientAscent
 from preshape.planning.heuristic import HeuristicPlanner
+from preshape.planning.line_search import LineSearch
 from preshape.planning.max_eval import MaxEvalPlanner
+from preshape.planning.multi_start import MultiStart
 from preshape.planning.objective import UnknownSuccess
 from preshape.planning.result import PlanStatus
 from preshape.planning.sampling import SamplingPlanner
@@ -47,6 +51,28 @@ def test_sampling_keeps_the_best_of_its_box_and_repeats_with_its_seed() -> None:
     np.testing.assert_array_equal(result.theta, planner.plan(OBJECTIVE, INITIAL, BOUNDS).theta)
     other = SamplingPlanner(samples_per_start=50, seed=4).plan(OBJECTIVE, INITIAL, BOUNDS)
     assert (other.theta != result.theta).any()
+
+
+def test_several_starts_find_the_higher_of_two_summits() -> None:
+    """From the initial grasp the ascent leads to the nearer, lower summit."""
+
+    def two_summits(theta: torch.Tensor) -> torch.Tensor:
+        low, high = ((theta - centre).square().sum(dim=1) for centre in (-0.5, 0.5))
+        return torch.maximum(1 - 20 * low, 2 - 20 * high)
+
+    objective = AnalyticObjective(two_summits)
+    initial, bounds = np.full((2, 2), -0.6), Bounds(np.full((2, 2), -1.0), np.ones((2, 2)))
+    ascent = GradientAscent(LineSearch(0.25, growth=2.0, max_step=1.0), tolerance=1e-6, patience=5)
+    alone = ascent.plan(objective, initial, bounds)
+    several = MultiStart(ascent, samples=30, climbed=2, seed=0).plan(objective, initial, bounds)
+    np.testing.assert_allclose(alone.theta, -0.5, atol=1e-3)
+    np.testing.assert_allclose(several.theta, 0.5, atol=1e-3)
+    np.testing.assert_array_equal(several.initial_theta, initial)
+    for start in range(2):
+        np.testing.assert_array_equal(several.path[start][[0, -1]], [initial[start], several.theta[start]])
+        assert len(several.path[start]) == len(several.climb[start]) == several.iterations[start] + 1
+        assert several.climb[start][-1] == several.success_prob[start]
+    assert several.evaluations > alone.evaluations + 60
 
 
 @pytest.mark.parametrize("samples", [1, 7])

@@ -14,6 +14,7 @@ from preshape.planning.gradient_ascent import GradientAscent
 from preshape.planning.lbfgs import LbfgsPlanner
 from preshape.planning.line_search import LineSearch
 from preshape.planning.max_eval import MaxEvalPlanner
+from preshape.planning.multi_start import MultiStart
 from preshape.planning.planner import Planner
 from preshape.planning.random_search import RandomSearchPlanner
 from preshape.planning.result import PlanStatus
@@ -23,6 +24,7 @@ ASCENT = GradientAscent(LineSearch(first_step=0.25, growth=2.0, max_step=1.0), t
 PLANNERS = {
     "inference": ASCENT,
     "paper": GradientAscent(LineSearch(first_step=0.001), climbed="logit", step_unit="raw"),
+    "several starts": MultiStart(ASCENT, samples=20, climbed=2, seed=0),
     "lbfgs": LbfgsPlanner(max_iterations=50, tolerance=1e-6),
     "cem": CrossEntropyPlanner(5, 30, 0.2, 0.8, 0.5, seed=0),
     "random search": RandomSearchPlanner(80, 0.5, 0.02, seed=0),
