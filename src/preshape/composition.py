@@ -8,6 +8,7 @@ from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig, OmegaConf
 
 from preshape.errors import InputError
+from preshape.paths import project_root
 from preshape.setting_values import check_values
 
 
@@ -120,9 +121,28 @@ def _planners(cfg: DictConfig) -> Iterator[tuple[str, Any]]:
         yield f"planners.{name}", cfg.planners[name]
 
 
-def chosen_option(group: str) -> str | None:
-    """Which option of a group the command line, or a default, chose; None outside of a command."""
-    return HydraConfig.get().runtime.choices.get(group) if HydraConfig.initialized() else None
+def chosen_option(group: str, otherwise: str | None = None) -> str | None:
+    """Which option of a group the command line, or a default, chose; None outside of a command.
+
+    Args:
+        group: folder under `conf/`.
+        otherwise: what is said for a command without this group.
+    """
+    return HydraConfig.get().runtime.choices.get(group, otherwise) if HydraConfig.initialized() else None
+
+
+def option_or(group: str, option: str, otherwise: str) -> str:
+    """An option of a group if there is one of that name, else another one.
+
+    In a list of defaults, this chooses by the name of another part, which need not have a file in the group:
+    `learning: ${option_or:learning,${model},config_cnn}`.
+
+    Args:
+        group: folder under `conf/`.
+        option: name of a file in it, perhaps.
+        otherwise: name of a file in it.
+    """
+    return option if (project_root() / "conf" / group / f"{option}.yaml").is_file() else otherwise
 
 
 def _choice(cfg: DictConfig, group: str) -> str:

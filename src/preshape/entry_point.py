@@ -13,7 +13,7 @@ from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import InterpolationKeyError
 
-from preshape.composition import check_composition, chosen_option
+from preshape.composition import check_composition, chosen_option, option_or
 from preshape.errors import InputError, bad_input_behind
 from preshape.paths import project_root
 from preshape.provenance import TYPED_COMMAND, typed_command
@@ -25,6 +25,7 @@ EXIT_INTERRUPTED = 130
 OmegaConf.register_new_resolver("project_root", lambda: str(project_root()), replace=True)
 OmegaConf.register_new_resolver("sweep_group", sweep_group, replace=True)
 OmegaConf.register_new_resolver("choice", chosen_option, replace=True)
+OmegaConf.register_new_resolver("option_or", option_or, replace=True)
 
 
 def entry_point(config_name: str) -> Callable[[Callable[[DictConfig], None]], Callable[[], None]]:
