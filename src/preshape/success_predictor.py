@@ -106,7 +106,7 @@ def _check_targets(settings: Mapping[str, Any]) -> None:
     known = {
         target
         for folder in folders
-        for file in folder.glob("*.yaml")
+        for file in folder.rglob("*.yaml")
         for target in re.findall(r"_target_: *([\w.]+)", file.read_text(encoding="utf-8"))
     }
     foreign = sorted(set(_targets(settings)) - known)
