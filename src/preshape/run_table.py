@@ -3,33 +3,43 @@
 import hashlib
 import logging
 import re
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import pandas as pd
 from hydra.experimental.callback import Callback
 from omegaconf import DictConfig
 
-from preshape.evaluation.fold_summary import FoldResult
-from preshape.files import atomic_path, exclusive, read_json
+from preshape.files import atomic_path, exclusive
 from preshape.provenance import command_line
 from preshape.sweep_folders import PLACES
 
 RUNS_FILE, TABLE_FILE = "runs.csv", "runs.md"
-FIGURES = {
-    "auc": "AUC",
-    "average_precision": "AP",
-    "brier": "Brier",
-    "ece": "ECE",
-    "palm_m": "palm off by (m)",
-}
-"""Figures of the table and how they are called; of a network that predicts grasps, the palm's error."""
-SMALLER_IS_BETTER = "palm_m"
 WHERE_AND_WHO = ("hydra", "paths", "tracking")
 LONGEST = 80
 
 log = logging.getLogger(__name__)
+
+
+class RunFigures(Protocol):
+    """What the table of a command's sweeps says about its runs."""
+
+    @property
+    def result_file(self) -> str:
+        """The file that a run has when it is finished."""
+
+    @property
+    def names(self) -> int:
+        """How many of the first columns that are shown are names; the others are numbers."""
+
+    def rows(self, run: Path) -> list[dict[str, Any]]:
+        """What a finished run came to, from its files: one row, or one for each of its parts."""
+
+    def best_first(self, rows: pd.DataFrame) -> pd.DataFrame:
+        """The rows of all runs in their order."""
+
+    def shown(self, rows: pd.DataFrame) -> pd.DataFrame:
+        """The same for people: cells of text under titles, the best first."""
 
 
 def sweep_folder(runs: Path, command: str) -> Path:
@@ -48,17 +58,18 @@ def sweep_folder(runs: Path, command: str) -> Path:
     return runs / "sweeps" / name
 
 
-def join_table(sweep: Path, run: Path) -> tuple[Path, Path]:
+def join_table(sweep: Path, run: Path, figures: RunFigures) -> tuple[Path, Path]:
     """Put a finished run into the table of its sweep, which is written anew.
 
     Several processes may do so at the same time.
 
     Args:
         sweep: folder of the table, see `sweep_folder`.
-        run: folder of the run; `metrics.json` lies in it, and the folder of its group is the one above.
+        run: folder of the run, below the folder with all sweeps.
+        figures: what the table says about runs.
 
     Returns:
-        `runs.csv` with a row for each run, and `runs.md` with one for each group and split.
+        `runs.csv` with the rows of each run, and `runs.md`, the table that people read.
 
     Raises:
         InputError: if a file cannot be read or written.
@@ -66,13 +77,14 @@ def join_table(sweep: Path, run: Path) -> tuple[Path, Path]:
     runs = sweep.parents[1]
     with exclusive(sweep / ".lock"):
         known = pd.read_csv(sweep / RUNS_FILE)["folder"] if (sweep / RUNS_FILE).is_file() else ()
-        folders = {*known, str(run.relative_to(runs))}
-        rows = [_row(runs, name) for name in sorted(folders) if (runs / name / "metrics.json").is_file()]
-        table = _best_first(pd.DataFrame(rows), "")
+        names = sorted({*known, str(run.relative_to(runs))})
+        finished = [name for name in names if (runs / name / figures.result_file).is_file()]
+        rows = [{**row, "folder": name} for name in finished for row in figures.rows(runs / name)]
+        table = figures.best_first(pd.DataFrame(rows))
         with atomic_path(sweep / RUNS_FILE) as temporary:
             table.to_csv(temporary, index=False)
         with atomic_path(sweep / TABLE_FILE) as temporary:
-            temporary.write_text(_markdown(table), encoding="utf-8")
+            temporary.write_text(_markdown(figures.shown(table), figures.names), encoding="utf-8")
     return sweep / RUNS_FILE, sweep / TABLE_FILE
 
 
@@ -86,58 +98,10 @@ class ShowRunTable(Callback):
             log.info("Best first, in %s:\n\n%s", table, table.read_text(encoding="utf-8"))
 
 
-def _row(runs: Path, name: str) -> dict[str, Any]:
-    """What the table says of a run."""
-    result = FoldResult(runs / name, read_json(runs / name / "metrics.json"))
-    scalars = result.scalars
-    positives = scalars.get("positives", scalars["n"])
-    return {
-        "group": Path(name).parent.name,
-        "model": result.content["model"],
-        "split": result.split,
-        "fold": result.content["fold"],
-        "n": int(scalars["n"]),
-        "positives": int(positives),
-        **{key: scalars.get(key, float("nan")) for key in FIGURES},
-        "folder": name,
-    }
-
-
-def _best_first(table: pd.DataFrame, suffix: str) -> pd.DataFrame:
-    """Rows by AUC; then those of networks that predict grasps, by the palm's error."""
-    by = [f"auc{suffix}", f"{SMALLER_IS_BETTER}{suffix}"]
-    return table.sort_values(by, ascending=[False, True], kind="stable", ignore_index=True)
-
-
-def _markdown(table: pd.DataFrame) -> str:
-    """Means and standard deviations over the folds of each group and split."""
-    figures = [key for key in FIGURES if table[key].notna().any()]
-    grouped = table.groupby(["group", "model", "split"], sort=False)
-    spread = {f"{key}{part}": (key, how) for key in FIGURES for part, how in PARTS.items()}
-    counts = {"folds": ("fold", "count"), "n": ("n", "sum"), "positives": ("positives", "sum")}
-    groups = _best_first(grouped.agg(**counts, **spread).reset_index(), "_mean")
-    header = ["run", "model", "split", "folds", "n", "lifted", *(FIGURES[key] for key in figures)]
-    lines = [header, ["---"] * 3 + ["---:"] * (len(header) - 3)]
-    for row in groups.to_dict("records"):
-        counts_of_row = (f"{row['folds']}", f"{row['n']:,}", f"{row['positives']:,}")
-        lines.append(
-            [row["group"], row["model"], row["split"], *counts_of_row, *(_cell(row, key) for key in figures)]
-        )
-    widths = [max(len(line[column]) for line in lines) for column in range(len(header))]
+def _markdown(table: pd.DataFrame, names: int) -> str:
+    """A table of text, columns of numbers to the right."""
+    rules = ["---"] * names + ["---:"] * (len(table.columns) - names)
+    lines = [list(table.columns), rules, *table.to_numpy().tolist()]
+    widths = [max(len(line[column]) for line in lines) for column in range(len(rules))]
     rows = (" | ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)) for line in lines)
     return "".join(f"| {row} |\n" for row in rows)
-
-
-def _std(values: pd.Series) -> float:
-    return float(values.std(ddof=0))
-
-
-PARTS = {"_mean": "mean", "_std": _std}
-
-
-def _cell(row: Mapping[Any, Any], key: str) -> str:
-    """Mean and, of several folds, their standard deviation."""
-    mean, std = row[f"{key}_mean"], row[f"{key}_std"]
-    if mean != mean:
-        return ""
-    return f"{mean:.3f}" if row["folds"] == 1 else f"{mean:.3f} ± {std:.3f}"

@@ -10,6 +10,7 @@ from preshape.data.labelled_data import LabelledData
 from preshape.errors import InputError
 from preshape.evaluation.fold_summary import summarise
 from preshape.files import file_hash, read_json
+from preshape.fold_table import FoldTable
 from preshape.logged_model import TrainedModel, seen_parts
 from preshape.models.success_model import GraspNetwork, SuccessModel
 from preshape.provenance import command_line, device_name, git_revision
@@ -91,7 +92,7 @@ class TrainingJob:
                 outcome = train(model, data, settings, self.folder, run, description).metrics.summary()
                 self._keep_model(model, data, run)
             summary = summarise(group, self._decisive(identity))
-            rows, table = join_table(sweep, self.folder)
+            rows, table = join_table(sweep, self.folder, FoldTable())
             if run.parent is not None:
                 run.parent.log(summary.scalars(), summary.folds)
                 for file in summary.files:

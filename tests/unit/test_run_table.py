@@ -6,6 +6,7 @@ import pandas as pd
 import pytest
 
 from preshape.files import write_json
+from preshape.fold_table import FoldTable
 from preshape.run_table import join_table, sweep_folder
 
 COMMAND = "python src/train.py --multirun model=config_cnn,regression split=seen fold=0,1"
@@ -24,7 +25,7 @@ def test_the_best_group_comes_first_and_no_run_twice(tmp_path: Path) -> None:
         for fold in (0, 1, 1):
             figures = {name: value - 0.1 * fold for name, value in best.items()}
             scalars = figures | {"brier": 0.2} if best else {"palm_m": 0.3}
-            rows, table = join_table(sweep, finish_run(tmp_path, group, fold, **scalars))
+            rows, table = join_table(sweep, finish_run(tmp_path, group, fold, **scalars), FoldTable())
     runs = pd.read_csv(rows)
     assert runs["group"].tolist() == ["good", "good", "bad", "bad", "regression", "regression"]
     assert runs["auc"].iloc[:4].tolist() == pytest.approx([0.9, 0.8, 0.5, 0.4])
