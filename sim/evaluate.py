@@ -4,10 +4,11 @@ import logging
 from pathlib import Path
 
 from hydra.core.hydra_config import HydraConfig
+from hydra.types import RunMode
 from omegaconf import DictConfig
 
 from preshape.entry_point import entry_point
-from sim.configured_evaluation import run_evaluation
+from sim.tracked_evaluation import tracked_evaluation
 
 log = logging.getLogger(__name__)
 
@@ -15,8 +16,10 @@ log = logging.getLogger(__name__)
 @entry_point("evaluate")
 def main(cfg: DictConfig) -> None:
     """Plan and execute on every scene, then write the evaluation folder and its summary."""
-    output = Path(HydraConfig.get().runtime.output_dir)
-    summary = run_evaluation(cfg, output)
+    hydra = HydraConfig.get()
+    output = Path(hydra.runtime.output_dir)
+    sweeps = Path(hydra.sweep.dir).absolute() if hydra.mode is RunMode.MULTIRUN else None
+    summary = tracked_evaluation(cfg, output, sweeps)
     log.info("Lifted: %s. Folder: %s", ", ".join(str(planner) for planner in summary), output)
 
 

@@ -4,7 +4,7 @@ import hashlib
 import logging
 import re
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import pandas as pd
 from hydra.experimental.callback import Callback
@@ -21,6 +21,7 @@ LONGEST = 80
 log = logging.getLogger(__name__)
 
 
+@runtime_checkable
 class RunFigures(Protocol):
     """What the table of a command's sweeps says about its runs."""
 
