@@ -69,7 +69,7 @@ class Commands:
                 *places,
                 *("collect.trials=1", "collect.workers=1", "collect.block=1"),
             ),
-            "sim/evaluate.py": (*places, weights, "evaluate.scenes=1", "evaluate.workers=1"),
+            "sim/evaluate.py": (*places, weights, "tracking=none", "evaluate.scenes=1", "evaluate.workers=1"),
             "sim/improve.py": (
                 *places,
                 *("rounds=1", "evaluate.scenes=1", "evaluate.poses_per_object=null", "evaluate.workers=1"),
