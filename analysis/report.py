@@ -1,5 +1,7 @@
 """Make pages and result files: `python analysis/report.py report=demo`."""
 
+import preshape.startup
+
 import logging
 
 from hydra.utils import instantiate

@@ -1,5 +1,7 @@
 """Collect labelled grasps: `python sim/collect.py objects=grocery collect.trials=330`."""
 
+import preshape.startup
+
 from functools import partial
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """Portray all objects of a set on one sheet: `python sim/contact_sheet.py objects=grocery`."""
 
+import preshape.startup
+
 import logging
 from pathlib import Path
 

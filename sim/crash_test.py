@@ -1,5 +1,7 @@
 """Kill collections at random moments and compare what they end with: `python sim/crash_test.py kills=25`."""
 
+import preshape.startup
+
 import logging
 from dataclasses import asdict
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Compare planners on new scenes: `python sim/evaluate.py weights=FILE.safetensors`."""
 
+import preshape.startup
+
 import logging
 from pathlib import Path
 

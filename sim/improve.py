@@ -1,5 +1,7 @@
 """Learn from the planner's own grasps, round by round: `python sim/improve.py rounds=2`."""
 
+import preshape.startup
+
 import logging
 from pathlib import Path
 

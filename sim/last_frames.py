@@ -1,5 +1,7 @@
 """Show how random trials ended beside their labels: `python sim/last_frames.py trials=100`."""
 
+import preshape.startup
+
 import logging
 from functools import partial
 

@@ -1,5 +1,7 @@
 """Repeat recorded trials and film them: `python sim/replay.py trials=[12,40]`."""
 
+import preshape.startup
+
 import logging
 from pathlib import Path
 

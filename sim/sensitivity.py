@@ -1,5 +1,7 @@
 """Repeat trials under other settings and count the labels that flip: `python sim/sensitivity.py`."""
 
+import preshape.startup
+
 import logging
 from dataclasses import asdict
 from pathlib import Path
@@ -23,9 +25,8 @@ log = logging.getLogger(__name__)
 def main(cfg: DictConfig) -> None:
     """Repeat trials in every variant and write how many labels flipped."""
     scenes, table = read_data_set(cfg.table, instantiate(cfg.robot.grasp_space))
-    digest, objects = data_hash(cfg.table), instantiate(cfg.objects.set).fingerprint
     changes = chosen(OmegaConf.to_container(cfg.variants, resolve=False), cfg.only)
-    runs = []
+    runs, digest, objects = [], data_hash(cfg.table), instantiate(cfg.objects.set).fingerprint
     for variant in compose_variants("sensitivity", HydraConfig.get().overrides.task, changes):
         numbers = sample_trials(table, cfg.trials_of.get(variant.name, cfg.trials), cfg.seed)
         runs.append(VariantRun.kept_in(Path(cfg.paths.cache), variant, numbers, (digest, objects)))

@@ -1,5 +1,7 @@
 """Write executed rectangles in the layout of the Cornell data: `python sim/write_cornell.py output=DIR`."""
 
+import preshape.startup
+
 import logging
 from pathlib import Path
 

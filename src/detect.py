@@ -1,5 +1,7 @@
 """Detect grasps in held-out images of the Cornell data: `python src/detect.py dataset.root=DIR`."""
 
+import preshape.startup
+
 import logging
 from pathlib import Path
 
@@ -25,8 +27,7 @@ def main(cfg: DictConfig) -> None:
         return instantiate(cfg.dataset.data), instantiate(cfg.model)
 
     config = OmegaConf.to_container(cfg, resolve=True)
-    tags = {"git_revision": git_revision()}
-    with instantiate(cfg.tracking).run(f"detect_{cfg.name}", config, tags) as run:
+    with instantiate(cfg.tracking).run(f"detect_{cfg.name}", config, {"git_revision": git_revision()}) as run:
         outcomes = evaluate_folds(Path(cfg.runs), cfg.splits, parts, instantiate(cfg.detector))
         rows = result_rows(cfg.name, outcomes, cfg.seed)
         merge_rows(Path(cfg.output), rows, cfg.seed)

@@ -1,5 +1,7 @@
 """Check what commonly goes wrong on a machine, and name the fix: `python src/doctor.py`."""
 
+import preshape.startup
+
 import logging
 import sys
 

@@ -1,5 +1,7 @@
 """Export a trained network as ONNX: `python src/export.py model=config_cnn weights=FILE.safetensors`."""
 
+import preshape.startup
+
 import logging
 
 from hydra.utils import instantiate

@@ -1,5 +1,7 @@
 """Fit a prior over theta to the grasps that lifted: `python src/fit_prior.py`."""
 
+import preshape.startup
+
 import logging
 
 import numpy as np

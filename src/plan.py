@@ -1,5 +1,7 @@
 """Plan grasps for a saved RGB-D view: `python src/plan.py view=DIR weights=FILE.safetensors`."""
 
+import preshape.startup
+
 import logging
 from pathlib import Path
 

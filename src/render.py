@@ -1,5 +1,7 @@
 """Make the views of a data set before trainings need them: `python src/render.py`."""
 
+import preshape.startup
+
 import logging
 import time
 

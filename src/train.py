@@ -1,5 +1,7 @@
 """Train a network that predicts grasp success: `python src/train.py`."""
 
+import preshape.startup
+
 import logging
 from pathlib import Path
 
@@ -20,12 +22,10 @@ def main(cfg: DictConfig) -> None:
     """Fit the network, measure it on held-out trials, and keep both."""
     torch.manual_seed(cfg.seed)
     hydra = HydraConfig.get()
+    experiment = hydra.runtime.choices.get("experiment") or "default"
+    counts = {key: cfg.dataset.data.get(key) for key in ("trials", "trials_learned")}
     settings = {
-        "about": {
-            "experiment": hydra.runtime.choices.get("experiment") or "default",
-            **{key: cfg[key] for key in ("split", "fold")},
-            **{key: cfg.dataset.data.get(key) for key in ("trials", "trials_learned")},
-        },
+        "about": {"experiment": experiment, "split": cfg.split, "fold": cfg.fold, **counts},
         "config": OmegaConf.to_container(cfg, resolve=True),
         "unresolved": OmegaConf.to_container(cfg, resolve=False),
         "in_sweep": hydra.mode is RunMode.MULTIRUN,

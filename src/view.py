@@ -1,5 +1,7 @@
 """Look at scenes, grasps, climbs and trials in the browser: `python src/view.py`."""
 
+import preshape.startup
+
 from functools import partial
 
 import numpy as np
@@ -21,8 +23,7 @@ def main(cfg: DictConfig) -> None:
     """Show a plan for a saved view, or the trials of a table, until interrupted."""
     files = (cfg.view, cfg.rgb_file, cfg.depth_file, cfg.camera_file)
     plans, is_saved = cfg.robot.heuristic is not None, any(name is not None for name in files)
-    wants_plan = is_saved or cfg.weights is not None
-    Request(cfg.robot.name, cfg.robot.description is not None, plans, wants_plan).check()
+    Request(cfg.robot.name, bool(cfg.robot.description), plans, is_saved or cfg.weights is not None).check()
     view = load_chosen_view(*files) if is_saved else None
     robot, planner = instantiate(cfg.robot.description), planner_of(cfg) if plans else None
     if view is not None and planner is not None:

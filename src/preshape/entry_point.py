@@ -15,12 +15,12 @@ from omegaconf.errors import InterpolationKeyError
 
 from preshape.composition import check_composition, chosen_option, option_or
 from preshape.errors import InputError, bad_input_behind
+from preshape.interruption import EXIT_INTERRUPTED, MESSAGE, raise_interrupts
 from preshape.paths import project_root
 from preshape.provenance import TYPED_COMMAND, typed_command
 from preshape.sweep_folders import sweep_group
 
 EXIT_BAD_INPUT = 2
-EXIT_INTERRUPTED = 130
 
 OmegaConf.register_new_resolver("project_root", lambda: str(project_root()), replace=True)
 OmegaConf.register_new_resolver("sweep_group", sweep_group, replace=True)
@@ -51,6 +51,7 @@ def entry_point(config_name: str) -> Callable[[Callable[[DictConfig], None]], Ca
             os.environ["HYDRA_FULL_ERROR"] = "1"
             os.environ[TYPED_COMMAND] = typed_command()
             try:
+                raise_interrupts()
                 conf = str(project_root() / "conf")
                 hydra.main(config_path=conf, config_name=config_name, version_base="1.3")(job)()
             except InputError as error:
@@ -70,7 +71,7 @@ def entry_point(config_name: str) -> Callable[[Callable[[DictConfig], None]], Ca
                 # Lightning answers an interrupt with an exit of its own
                 if isinstance(end, SystemExit) and not isinstance(end.__context__, KeyboardInterrupt):
                     raise
-                _end("Interrupted.", EXIT_INTERRUPTED)
+                _end(MESSAGE, EXIT_INTERRUPTED)
 
         return command
 

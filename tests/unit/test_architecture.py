@@ -36,6 +36,10 @@ def imported_packages(path: Path) -> Iterator[str]:
             yield node.module.split(".")[0]
 
 
+def is_import(node: ast.AST) -> bool:
+    return isinstance(node, ast.Import | ast.ImportFrom)
+
+
 @pytest.mark.parametrize(
     ("path", "forbidden"),
     [pytest.param(path, forbidden, id=name(path)) for paths, forbidden in FORBIDDEN for path in paths],
@@ -47,6 +51,12 @@ def test_imports_go_one_way(path: Path, forbidden: set[str]) -> None:
 @pytest.mark.parametrize("path", ENTRY_POINTS, ids=name)
 def test_entry_points_are_short(path: Path) -> None:
     assert len(path.read_text(encoding="utf-8").splitlines()) <= 40
+
+
+@pytest.mark.parametrize("path", [path for path in ENTRY_POINTS if path.parts[-2] != "benchmarks"], ids=name)
+def test_an_interrupt_is_understood_from_the_first_import_on(path: Path) -> None:
+    imports = (node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if is_import(node))
+    assert ast.unparse(next(imports)) == "import preshape.startup"
 
 
 @pytest.mark.parametrize("path", LIBRARY + SIMULATOR + ANALYSIS, ids=name)

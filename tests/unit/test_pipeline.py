@@ -14,9 +14,9 @@ ROOT = Path(__file__).parents[2]
 PIPELINES = [ROOT / "dvc.yaml", *sorted((ROOT / "pipelines").glob("*/dvc.yaml"))]
 PLACES = {"preshape": ROOT / "src" / "preshape", "sim": ROOT / "sim", "analysis": ROOT / "analysis"}
 DECIDES_NOTHING = {  # how a run is started, told and kept, not what comes out
-    *("composition", "entry_point", "errors", "files", "fold_table", "logged_model", "mlflow_tracking"),
-    *("paths", "progress", "provenance", "run_table", "setting_values", "sweep_folders", "tracking"),
-    "training_job",
+    *("composition", "entry_point", "errors", "files", "fold_table", "interruption", "logged_model"),
+    *("mlflow_tracking", "paths", "progress", "provenance", "run_table", "setting_values", "startup"),
+    *("sweep_folders", "tracking", "training_job"),
 }
 
 

@@ -1,0 +1,34 @@
+"""An interrupt ends a command in one line and with status 130."""
+
+import os
+import signal
+import sys
+from types import FrameType
+
+MESSAGE = "Interrupted."
+EXIT_INTERRUPTED = 130
+"""As of a shell's command that SIGINT ended."""
+STANDARD_ERROR = 2
+
+
+def end_when_interrupted() -> None:
+    """Let an interrupt end this process at once, which has begun nothing that it would have to end well.
+
+    An exception might be lost in what a library that is being imported does about errors. Worker processes,
+    which import the script as well, are left to the one that started them, and ignored interrupts are ignored.
+    """
+    main = sys.modules["__main__"]
+    is_script = hasattr(main, "__file__") and main.__spec__ is None
+    if is_script and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, _end)
+
+
+def raise_interrupts() -> None:
+    """Let an interrupt be a `KeyboardInterrupt` again, for who calls this handles it from now on."""
+    if signal.getsignal(signal.SIGINT) is _end:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def _end(_number: int, _frame: "FrameType | None") -> None:
+    os.write(STANDARD_ERROR, f"{MESSAGE}\n".encode())
+    os._exit(EXIT_INTERRUPTED)
