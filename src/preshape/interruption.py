@@ -14,8 +14,8 @@ STANDARD_ERROR = 2
 def end_when_interrupted() -> None:
     """Let an interrupt end this process at once, which has begun nothing that it would have to end well.
 
-    An exception might be lost in what a library that is being imported does about errors. Worker processes,
-    which import the script as well, are left to the one that started them, and ignored interrupts are ignored.
+    An exception might be lost in what a library that is being imported does about errors. Workers, which
+    import the script as well, are left to the process that started them; an ignored interrupt stays ignored.
     """
     main = sys.modules["__main__"]
     is_script = hasattr(main, "__file__") and main.__spec__ is None
