@@ -42,23 +42,17 @@ ONE_OF = {
     "precision": ("32-true", "16-mixed", "bf16-mixed"),
 }
 """Settings that have few values, by the last part of their names."""
+NEEDED_PATHS = (
+    *("output", "table", "folder", "data", "result", "results", "page", "card", "evaluation", "metrics"),
+    *("families", "effort", "runs"),
+)
+"""Settings that are files or folders and cannot be null, by the last part of their names."""
 PATHS = (
-    *(
-        "view",
-        "rgb_file",
-        "depth_file",
-        "camera_file",
-        "weights",
-        "output",
-        "table",
-        "root",
-        "runs",
-        "result",
-    ),
-    *("results", "page", "card", "evaluation", "metrics", "families", "effort", "first_training", "folder"),
+    *NEEDED_PATHS,
+    *("view", "rgb_file", "depth_file", "camera_file", "weights", "root", "first_training"),
 )
 """Settings that are files or folders, by the last part of their names."""
-OR_NULL = ("workers", "data.trials", "trials_learned", "poses_per_object", "shard", "density")
+OR_NULL = ("workers", "data.trials", "trials_learned", "poses_per_object", "shard", "density", "report.runs")
 """Those that may be null, by the end of their names."""
 KINDS: tuple[tuple[tuple[type, ...], str], ...] = (
     ((bool,), "true or false"),
@@ -90,8 +84,10 @@ def check_values(cfg: DictConfig) -> None:
             raise _not_possible(key, value, "a number from 0 to below 1")
         if name in ONE_OF and value not in ONE_OF[name]:
             raise _not_possible(key, value, f"one of {', '.join(ONE_OF[name])}")
-        if name == "output" and value is None:
+        if name in NEEDED_PATHS and value is None:
             raise _not_possible(key, value, "a path")
+        if name == "method" and value is None:
+            raise _not_possible(key, value, "a method, as the files under conf/planner do")
         if name in PATHS and not isinstance(value, str | None):
             raise _not_possible(key, value, f"a path, such as ./{value}")
     if HydraConfig.initialized():
@@ -123,10 +119,15 @@ def _check_kinds(cfg: DictConfig) -> None:
         return
     before = compose(hydra.job.config_name, [str(own.input_line) for own in overrides if own not in values])
     for own in values:
-        default, value = (_found(node, own.key_or_group) for node in (before, cfg))
+        key = own.key_or_group
+        default, value = (_found(node, key) for node in (before, cfg))
+        if value is None and _must_be_given(before, key):
+            raise _not_possible(key, value, "a value")
         kinds, said = next(((kinds, said) for kinds, said in KINDS if _is(default, kinds)), ((object,), ""))
         if value is not None and not _is(value, kinds):
-            raise _not_possible(own.key_or_group, value, said)
+            raise _not_possible(key, value, said)
+        if isinstance(value, ListConfig) and _numbers(default) and not _numbers(value):
+            raise _not_possible(key, value, "a list in which each is a number, as in its default")
 
 
 def _found(node: DictConfig, key: str) -> Any:
@@ -134,6 +135,17 @@ def _found(node: DictConfig, key: str) -> Any:
         return OmegaConf.select(node, key)
     except OmegaConfBaseException:
         return None
+
+
+def _must_be_given(node: DictConfig, key: str) -> bool:
+    parent, _, name = key.rpartition(".")
+    inner = OmegaConf.select(node, parent) if parent else node
+    return isinstance(inner, DictConfig) and OmegaConf.is_missing(inner, name)
+
+
+def _numbers(values: Any) -> bool:
+    """Whether this is a list of numbers, and of at least one."""
+    return isinstance(values, ListConfig) and len(values) > 0 and all(_is(one, Real) for one in values)
 
 
 def _is(value: Any, kinds: type | tuple[type, ...]) -> bool:

@@ -24,6 +24,10 @@ CONF = Path(__file__).parents[2] / "conf"
         ("collect.trials=1.5", "a whole number from 1 on"),
         ("collect.workers=true", "a whole number from 1 on"),
         ("collect.output=null", "a path"),
+        ("report.effort=null", "a path"),
+        ("runs=null", "a path"),
+        ("planners.inference.method=null", "conf/"),
+        ("dataset.data.folder=null", "a path"),
         ("view=7", "./7"),
         ("schedule=none", "one_cycle"),
         ("validation_fraction=2", "from 0 to below 1"),
@@ -41,7 +45,13 @@ def test_a_value_that_cannot_be_is_named_with_what_can(setting: str, message: st
 
 @pytest.mark.parametrize(
     "setting",
-    ["collect.workers=null", "objects.set.density=null", "dataset.data.trials=null", "trials=[1,2]"],
+    [
+        "collect.workers=null",
+        "objects.set.density=null",
+        "dataset.data.trials=null",
+        "trials=[1,2]",
+        "report.runs=null",
+    ],
 )
 def test_what_may_be_null_or_a_list_passes(setting: str) -> None:
     check_values(OmegaConf.from_dotlist([setting]))
@@ -55,14 +65,14 @@ def test_every_shipped_value_passes() -> None:
 
 
 @pytest.fixture
-def check_prior() -> Iterator[Callable[..., None]]:
-    """Check the values of `conf/fit_prior.yaml`, as the command itself does."""
+def check() -> Iterator[Callable[..., None]]:
+    """Check the values of a command, as the command itself does."""
 
-    def check(*overrides: str) -> None:
+    def check(command: str, *overrides: str) -> None:
         with initialize_config_dir(str(CONF), version_base="1.3"):
-            cfg = compose("fit_prior", list(overrides), return_hydra_config=True)
+            cfg = compose(command, list(overrides), return_hydra_config=True)
             HydraConfig.instance().set_config(cfg)
-            check_values(compose("fit_prior", list(overrides)))
+            check_values(compose(command, list(overrides)))
 
     yield check
     HydraConfig.instance().cfg = None
@@ -74,13 +84,19 @@ def check_prior() -> Iterator[Callable[..., None]]:
         ("robot.heuristic.top_offset_m=far", "a number"),
         ("robot.grasp_space.joint_limits.index_0=7", "a list in brackets"),
         ("dataset.data.added=yes", "a list in brackets"),
+        ("robot.grasp_space.joint_limits.index_0=[0,x]", "a list in which each is a number"),
     ],
 )
-def test_a_value_of_another_kind_is_refused(check_prior, setting: str, message: str) -> None:
+def test_a_value_of_another_kind_is_refused(check, setting: str, message: str) -> None:
     with pytest.raises(InputError, match=setting.split("=")[0]) as refusal:
-        check_prior("camera=kinect_ideal", setting)
+        check("fit_prior", "camera=kinect_ideal", setting)
     assert message in refusal.value.fix
 
 
-def test_values_of_the_same_kind_and_choices_pass(check_prior) -> None:
-    check_prior("prior=network", "robot.heuristic.top_offset_m=1", "~dataset.data.added", "+note=x")
+def test_what_has_to_be_given_cannot_be_null(check) -> None:
+    with pytest.raises(InputError, match="weights cannot be null"):
+        check("export", "weights=null")
+
+
+def test_values_of_the_same_kind_and_choices_pass(check) -> None:
+    check("fit_prior", "prior=network", "robot.heuristic.top_offset_m=1", "~dataset.data.added", "+note=x")

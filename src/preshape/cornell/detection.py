@@ -94,6 +94,11 @@ class Detector:
     grid: RectangleGrid | None
     seed: int
 
+    def __post_init__(self) -> None:
+        if not all(count >= 1 for count in self.counts):
+            where = f"detector.counts={list(self.counts)}"
+            raise InputError("Something is chosen of no rectangle", where=where, fix="give counts from 1 on")
+
     def centre(self, image: CornellImage) -> tuple[float, float]:
         """Centre of an image's object, or of the image where none is found.
 

@@ -67,6 +67,11 @@ def make_detector(counts: tuple[int, ...] = (1, 4)) -> Detector:
     return Detector(planner, counts, grid, seed=0)
 
 
+def test_nothing_is_chosen_of_no_rectangle() -> None:
+    with pytest.raises(InputError, match="no rectangle"):
+        make_detector((0, 4))
+
+
 def image_with(*positives: GraspRectangle) -> LoadedImage:
     image = CornellImage(FILES, Subject(1, "block", "table"), positives, ())
     return LoadedImage(image, torch.zeros(8, 120, 160, dtype=torch.float16))
