@@ -1,11 +1,15 @@
 """Wrong uses of every command."""
 
+import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from places import DAMAGES, damaged
+from places import DAMAGES, DAMAGES_OF_MORE, damaged
+from report_inputs import CORNELL_FILES, Input, Reports
 from wrong_values import WRONG_VALUES
+
+from preshape.paths import project_root
 
 REFUSED = 2
 
@@ -42,7 +46,9 @@ class Commands:
 
     def __init__(self, inputs: Path, work: Path) -> None:
         self.inputs, self.work = inputs, work
-        places = (f"paths.outputs={work / 'outputs'}", f"paths.cache={work / 'cache'}")
+        if not (work / "folds").exists():  # detections are written beside the weights
+            shutil.copytree(inputs / "folds", work / "folds")
+        self.places = places = (f"paths.outputs={work / 'outputs'}", f"paths.cache={work / 'cache'}")
         boxes = (
             "dataset.data.views.renderer={_target_:synthetic_scenes.BoxRenderer}",
             "dataset.data.views.maker=null",
@@ -60,11 +66,13 @@ class Commands:
             "src/plan.py": (*places, f"view={inputs / 'view'}", weights, "planner.method.max_iterations=1"),
             "src/detect.py": (
                 *places,
-                *("tracking=none", f"dataset.root={inputs / 'cornell'}", f"runs={work / 'runs'}"),
-                f"output={work / 'cornell.json'}",
+                *("tracking=none", f"dataset.root={inputs / 'cornell'}", f"runs={work / 'folds'}"),
+                *("splits=[unseen]", "detector.counts=[1]", "detector.planner.starts.count=2"),
+                *("detector.grid.step_px=60", "detector.grid.angles=2", f"output={work / 'cornell.json'}"),
             ),
             "src/export.py": (*places, "model=config_cnn", f"weights={inputs / 'config_cnn.safetensors'}"),
             "src/fit_prior.py": (*places, *boxes, "prior.fit.components=1"),
+            "src/render.py": (*places, *boxes),
             "sim/collect.py": (
                 *places,
                 *("collect.trials=1", "collect.workers=1", "collect.block=1"),
@@ -83,7 +91,10 @@ class Commands:
             "sim/crash_test.py": (*places, "kills=1", f"output={work / 'crash_test.json'}"),
             "sim/contact_sheet.py": (*places,),
             "sim/last_frames.py": (*places, "trials=1", "workers=1", f"result={work / 'label_check.json'}"),
-            "sim/write_cornell.py": (*places, f"output={work / 'written'}", "maker.workers=1"),
+            "sim/write_cornell.py": (
+                *places,
+                *(f"output={work / 'written'}", "maker.workers=1", f"maker.table={inputs / 'rectangles'}"),
+            ),
             "analysis/report.py": (*places,),
         }
 
@@ -92,12 +103,14 @@ class Commands:
         written = {
             "benchmarks": ("page",),
             "collection": ("output",),
-            "cornell": ("results",),
+            "cornell": ("output", "page"),
             "dataset": ("output", "card", "page"),
+            "curves": ("output",),
             "first_pass": ("output",),
-            "gripper": ("output",),
+            "gripper": ("output", "page"),
             "learning": ("output", "page"),
             "objects": ("page",),
+            "paper": ("output",),
             "planning": ("output", "page"),
             "demo": ("output",),
         }[name]
@@ -128,70 +141,47 @@ def value_cases(commands: Commands) -> Iterator[Case]:
 
 
 def file_cases(commands: Commands) -> Iterator[Case]:
-    """Every file that a command reads, in all ways in which it can be wrong."""
-    for number, (command, arguments, setting, good) in enumerate(_inputs(commands)):
-        for how in DAMAGES:
+    """Every file that a command reads, as it should be, and in all ways in which it can be wrong."""
+    whole = dict.fromkeys(
+        (own.command, *own.arguments, own.argument(own.good)) for own in inputs_of(commands)
+    )
+    for command, *arguments in whole:
+        yield Case("nothing wrong", command, tuple(arguments), status=0)
+    for number, own in enumerate(inputs_of(commands)):
+        for how in DAMAGES if own.damaged is None else DAMAGES_OF_MORE:
             place = commands.work / "damaged" / f"{number}_{how.replace(' ', '_')}"
-            path = damaged(good, how, place, commands.work / "executed")
-            yield Case(f"file: {how}", command, (*arguments, f"{setting}={path}"))
+            path = damaged(own.good, how, place, commands.work / "executed", own.damaged)
+            arguments = (*own.arguments, own.argument(path))
+            yield Case(f"file: {how}", own.command, arguments, may_succeed=own.may_do)
 
 
-def _inputs(commands: Commands) -> Iterator[tuple[str, tuple[str, ...], str, Path]]:
-    """Command, arguments, setting and good file of everything that is read."""
+def inputs_of(commands: Commands) -> Iterator[Input]:
+    """Everything that is read."""
     inputs, usual = commands.inputs, commands.usual
-    plan, table = usual["src/plan.py"], inputs / "table"
-    yield "src/plan.py", plan, "rgb_file", inputs / "view" / "rgb.png"
-    yield "src/plan.py", plan, "depth_file", inputs / "view" / "depth.png"
-    yield "src/plan.py", plan, "depth_file", inputs / "depth.npy"
-    yield "src/plan.py", plan, "camera_file", inputs / "view" / "camera.json"
-    yield "src/plan.py", plan, "weights", inputs / "palm_points.safetensors"
-    for prior in ("prior.json", "prior.safetensors"):
-        yield "src/plan.py", (*plan, "planner.prior.weight=1"), "planner.prior.file", inputs / prior
-    yield "src/export.py", usual["src/export.py"], "weights", inputs / "config_cnn.safetensors"
-    yield "sim/evaluate.py", usual["sim/evaluate.py"], "weights", inputs / "palm_points.safetensors"
-    for command in ("src/train.py", "src/fit_prior.py"):
-        yield command, usual[command], "dataset.data.folder", table
+
+    def of(command: str, *more: str) -> tuple[str, tuple[str, ...]]:
+        return command, (*usual[command], *more)
+
+    plan, table = of("src/plan.py"), inputs / "table"
+    for setting, name in (
+        *(("rgb_file", "view/rgb.png"), ("depth_file", "view/depth.png"), ("depth_file", "depth.npy")),
+        *(("camera_file", "view/camera.json"), ("weights", "palm_points.safetensors")),
+    ):
+        yield Input(*plan, setting, inputs / name)
+    for name in ("prior.json", "prior.safetensors"):
+        yield Input(*of("src/plan.py", "planner.prior.weight=1"), "planner.prior.file", inputs / name)
+    yield Input(*of("src/export.py"), "weights", inputs / "config_cnn.safetensors")
+    yield Input(*of("sim/evaluate.py"), "weights", inputs / "palm_points.safetensors")
+    for command in ("src/train.py", "src/fit_prior.py", "src/render.py"):
+        yield Input(*of(command), "dataset.data.folder", table)
+    shipped = project_root() / "data" / "allegro_grocery"
     for command in ("sim/replay.py", "sim/sensitivity.py", "sim/last_frames.py"):
-        yield command, usual[command], "table", table
-    yield "sim/write_cornell.py", usual["sim/write_cornell.py"], "maker.table", table
-    yield "src/detect.py", usual["src/detect.py"], "dataset.root", inputs / "cornell"
-    yield (
-        "sim/collect.py",
-        (*usual["sim/collect.py"], "objects=mesh_folder"),
-        "objects.root",
-        inputs / "meshes",
-    )
-    sheet = usual["sim/contact_sheet.py"]
-    yield "sim/contact_sheet.py", (*sheet, "objects=mesh_folder"), "objects.root", inputs / "meshes"
-    evaluation, metrics = inputs / "evaluation", inputs / "metrics.json"
-    demo = commands.report("demo", metrics=metrics, evaluation=evaluation)
-    yield "analysis/report.py", demo, "report.evaluation", evaluation
-    yield "analysis/report.py", demo, "report.metrics", metrics
-    data = commands.report(
-        "dataset", data=table, families=inputs / "grocery.csv", sensitivity="null", label_check="null"
-    )
-    yield "analysis/report.py", data, "report.data", table
-    yield "analysis/report.py", data, "report.families", inputs / "grocery.csv"
-    for key in ("sensitivity", "label_check"):
-        yield "analysis/report.py", data, f"report.{key}", _result(key)
-    for key in ("dataset", "crash_test", "sensitivity", "label_check"):
-        yield (
-            "analysis/report.py",
-            commands.report("collection", effort="null"),
-            f"report.{key}",
-            _result(key),
-        )
-    yield "analysis/report.py", commands.report("benchmarks"), "report.results", _result("benchmarks")
-    first = commands.report("first_pass", data=table, metrics=metrics, evaluation=evaluation)
-    yield "analysis/report.py", first, "report.evaluation", evaluation
-    yield "analysis/report.py", commands.report("objects", data=table), "report.data", table
-    yield (
-        "analysis/report.py",
-        commands.report("cornell", shown=1, compared=1),
-        "report.root",
-        inputs / "cornell",
-    )
-
-
-def _result(name: str) -> Path:
-    return Path(__file__).parents[2] / "results" / f"{name}.json"
+        yield Input(*of(command), "table", shipped)
+    yield Input(*of("sim/write_cornell.py"), "maker.table", inputs / "rectangles")
+    for file in CORNELL_FILES:
+        yield Input(*of("src/detect.py"), "dataset.root", inputs / "cornell", file)
+    for file in ("model.safetensors", "model.safetensors.json", "metrics.json", "predictions.parquet"):
+        yield Input(*of("src/detect.py"), "runs", inputs / "folds", f"unseen_fold0/{file}")
+    for command in ("sim/collect.py", "sim/contact_sheet.py"):
+        yield Input(*of(command, "objects=mesh_folder"), "objects.root", inputs / "meshes")
+    yield from Reports(commands.report, inputs)

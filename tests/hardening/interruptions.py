@@ -13,7 +13,6 @@ import sys
 import tempfile
 import time
 from dataclasses import dataclass, field
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -25,19 +24,15 @@ ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "fixtures")]
 
 from jobs import JOBS, Job  # noqa: E402
-from misuse import LIBRARIES, become, run_script  # noqa: E402
+from misuse import become, import_all, run_script  # noqa: E402
 from places import make_inputs  # noqa: E402
 
-MODULES = (
-    *("preshape.entry_point", "preshape.training_job", "preshape.configured_planner", "preshape.onnx_export"),
-    *("preshape.planning.prior_fitting", "sim.collection", "sim.collected_tables", "analysis.dataset_report"),
-)
-"""What the commands import, loaded before, so that they are stopped at their work and not before it."""
 INTERRUPTED = 130
-ROUNDS = 3
-"""So often each command is stopped with each signal."""
 UNEQUAL = ("runtime_s", "date", "command", "git_revision", "versions", "seconds")
 """What differs between any two runs."""
+PAGES = (".html", ".md")
+"""They show commands and times."""
+MISSING = "missing"
 ELSEWHERE = {"TZ": "Asia/Kathmandu", "LC_ALL": "C", "PYTHONUTF8": "0"}
 
 log = logging.getLogger(__name__)
@@ -48,7 +43,6 @@ class Count:
     """What happened to a command."""
 
     interrupted: int = 0
-    loading: int = 0
     killed: int = 0
     ended_before: int = 0
     pairs: int = 0
@@ -59,8 +53,7 @@ class Count:
 def main() -> None:
     """Stop every command, and write a table."""
     logging.basicConfig(format="%(message)s", level=logging.INFO, stream=sys.stdout)
-    for library in (*LIBRARIES, *MODULES):
-        import_module(library)
+    import_all()  # so that they are stopped at their work, and not before it
     texts = sys.argv[1:]
     counts = {}
     with tempfile.TemporaryDirectory(prefix="interruptions") as folder:
@@ -70,10 +63,10 @@ def main() -> None:
         for name in JOBS:
             if not texts or any(text in name for text in texts):
                 counts[name] = disturb(name, inputs, Path(folder) / name)
-    log.info("| command | interrupted | while loading | killed | ended before | pairs | elsewhere | wrong |")
-    log.info("|---|---:|---:|---:|---:|---:|---:|---|")
+    log.info("| command | interrupted | killed | ended before | pairs | elsewhere | wrong |")
+    log.info("|---|---:|---:|---:|---:|---:|---|")
     for name, count in counts.items():
-        stopped = (count.interrupted, count.loading, count.killed, count.ended_before)
+        stopped = (count.interrupted, count.killed, count.ended_before)
         numbers = " | ".join(map(str, (*stopped, count.pairs, count.elsewhere)))
         log.info("| %s | %s | %s |", name, numbers, "; ".join(count.faults) or "nothing")
     sys.exit(any(count.faults for count in counts.values()))
@@ -91,10 +84,11 @@ def disturb(name: str, inputs: Path, place: Path) -> Count:
         log.warning("%s", said)
         return count
     expected = results(undisturbed, place / "undisturbed")
+    count.faults += [f"no {name}" for name, found in expected.items() if found == MISSING]
     for kind in (signal.SIGINT, signal.SIGKILL):
         work = place / kind.name
         own = JOBS[name](inputs, work)
-        for _ in range(ROUNDS):
+        for _ in range(own.rounds):
             running = Start(own, work)
             time.sleep(rng.uniform(0, longest_s))
             _judge(running.stop(kind), kind, count)
@@ -106,6 +100,7 @@ def disturb(name: str, inputs: Path, place: Path) -> Count:
     own = JOBS[name](inputs, place / "elsewhere")
     _finish([Start(own, place / "elsewhere", ELSEWHERE)], own, place / "elsewhere", expected, count)
     count.elsewhere += 1
+    log.info("%s: %.1f s undisturbed, %s", name, longest_s, count.faults or "nothing wrong")
     return count
 
 
@@ -148,9 +143,7 @@ def _judge(ended: tuple[int, str], kind: signal.Signals, count: Count) -> None:
         count.killed += 1
     else:
         count.interrupted += 1
-        loading = "Traceback" in said and "in command" not in said  # nothing had begun yet
-        count.loading += loading
-        if status != INTERRUPTED or ("Traceback" in said and not loading):
+        if status != INTERRUPTED or "Traceback" in said:
             count.faults.append(f"status {status} after an interrupt")
             log.warning("%s", "\n".join(said.splitlines()[-25:]))
 
@@ -188,10 +181,15 @@ def _check_whole(work: Path, count: Count) -> None:
 def results(own: Job, work: Path) -> dict[str, str]:
     """Digest of what each file says, but for what differs between any two runs."""
     digests = {}
-    for name in own.results:
-        path = work / name
+    places = [work / name for name in own.results]
+    below = [path for place in places if place.is_dir() for path in sorted(place.rglob("*"))]
+    files = [path for path in (*places, *below) if not path.is_dir() and not path.name.startswith(".")]
+    for path in files:
+        name = str(path.relative_to(work))
         if not path.is_file():
-            digests[name] = "missing"
+            digests[name] = MISSING
+        elif path.suffix in PAGES:
+            digests[name] = "there"
         elif path.suffix == ".parquet":
             frame = pq.read_table(path).to_pandas()
             timings = [column for column in frame if column.endswith("_s")]

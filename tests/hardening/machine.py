@@ -12,14 +12,13 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib import import_module
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "fixtures")]
 
 from cases import Case, Commands  # noqa: E402
-from misuse import LIBRARIES, Outcome, run_case, table  # noqa: E402
+from misuse import Outcome, import_all, run_case, table  # noqa: E402
 from places import make_inputs  # noqa: E402
 
 LEFT_KB = (0, 16, 64)
@@ -33,8 +32,7 @@ log = logging.getLogger(__name__)
 def main() -> None:
     """Run all cases and write a table of the kinds."""
     logging.basicConfig(format="%(message)s", level=logging.INFO, stream=sys.stdout)
-    for library in LIBRARIES:
-        import_module(library)
+    import_all()
     texts = sys.argv[1:]
     with tempfile.TemporaryDirectory(prefix="machine") as folder:
         inputs, work = Path(folder) / "inputs", Path(folder) / "work"

@@ -21,8 +21,8 @@ WRONG_VALUES = {
             "trainer.settings.precision=13",
             "trainer.batches_per_epoch=0",
         ),
-        *("learning.settings.learning_rate=fast"),
         *(
+            "learning.settings.learning_rate=fast",
             "robot=baxter",
             "dataset=cornell",
             "learning.settings.schedule=none",
@@ -34,8 +34,16 @@ WRONG_VALUES = {
         *("planner.prior.weight=1", "planner.prior.weight=heavy", "model=config_cnn", "model=patches_cnn"),
         *("robot=baxter", "planner=no_such", "view=7", "weights=null", "planner.box.position_m=-1"),
     ),
-    "src/detect.py": ("splits=elsewhere", "splits=[elsewhere]", "detector.counts=[x]", "robot=lbr4_allegro"),
-    "src/export.py": ("grasps=0", "grasps=x", "model=palm_points", "model=patches_cnn"),
+    "src/detect.py": (
+        "splits=elsewhere",
+        "splits=[elsewhere]",
+        "detector.counts=[x]",
+        "detector.counts=[0]",
+        "robot=lbr4_allegro",
+        "runs=null",
+    ),
+    "src/export.py": ("grasps=0", "grasps=x", "model=palm_points", "model=patches_cnn", "weights=null"),
+    "src/render.py": ("dataset.data.folder=null", "patches=maybe", "dataset.data.trials=0", "robot=baxter"),
     "src/fit_prior.py": (
         *(
             "prior.fit.components=0",
@@ -97,6 +105,7 @@ WRONG_VALUES = {
         "trials=0.5",
         "recorder.every=0",
         "trials=[]",
+        "table=null",
     ),
     "sim/sensitivity.py": (
         "trials=0",
@@ -125,5 +134,6 @@ WRONG_VALUES = {
         "maker.workers=0",
         "robot=lbr4_allegro",
     ),
+    "analysis/report.py": ("report.results=null", "report.default=no_such"),
 }
 """Values of a wrong type, out of range, or that do not fit together."""
