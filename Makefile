@@ -16,7 +16,7 @@ demo: setup  ## train, plan and execute grasps, and write a page that shows it (
 	$(PYTHON_IN_VENV) analysis/report.py report=demo
 
 test: lint  ## check style and types, and run all tests (10 minutes)
-	OMP_NUM_THREADS=1 $(PYTHON_IN_VENV) -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder
+	OMP_NUM_THREADS=1 $(PYTHON_IN_VENV) -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder --durations=20
 
 lint: setup  ## check style and types only
 	.venv/bin/ruff check
