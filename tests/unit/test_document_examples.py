@@ -52,6 +52,7 @@ CHOSEN = {
         "dataset.data.origin": "TableOrigin",
     },
     "plan planner=coordinate_search": {"planner.method": "CoordinateSearchPlanner"},
+    "plan robot=lbr4_three_finger": {"robot.clearance": "HandClearance", "planner.method": "GradientAscent"},
     "collect objects=bricks robot=lbr4_allegro_long": {
         "objects.set": "Bricks",
         "robot.description.settings": "RobotSettings",
@@ -67,7 +68,6 @@ def test_parts_are_added_by_the_files_that_the_page_shows(tmp_path: Path) -> Non
     examples = dict(NAMED.findall((ROOT / "docs" / "extending.md").read_text(encoding="utf-8")))
     assert {name.split("/")[1] for name in examples if name.startswith("conf/")} == {
         "model",
-        "learning",
         "planner",
         "objects",
         "robot",
