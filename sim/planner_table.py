@@ -4,8 +4,10 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
+from omegaconf import OmegaConf
 
 from preshape.files import read_json
+from preshape.provenance import command_line
 from sim.evaluation import SUMMARY_FILE
 
 SHOWN = ("scenes", "answered", "executed", "lifted", "rate", "low", "high", "predicted")
@@ -22,7 +24,7 @@ class PlannerTable:
         """The planners of an evaluation folder."""
         planners = read_json(run / SUMMARY_FILE)["planners"]
         return [
-            {"run": run.name, "planner": name, **{key: summary[key] for key in SHOWN}}
+            {"run": _swept(run), "planner": name, **{key: summary[key] for key in SHOWN}}
             for name, summary in planners.items()
         ]
 
@@ -44,6 +46,14 @@ class PlannerTable:
             }
             for row in rows.to_dict("records")
         )
+
+
+def _swept(run: Path) -> str:
+    """The settings that tell a run from the others of its sweep: those that were not typed as they are."""
+    file = run / ".hydra" / "overrides.yaml"
+    chosen = [str(override) for override in OmegaConf.load(file)] if file.is_file() else []
+    own = [override.partition("=") for override in chosen if override not in command_line().split()]
+    return ", ".join(f"{key.rpartition('.')[2]}={value}" for key, _, value in own) or run.name
 
 
 def _rate(row: dict[Any, Any]) -> str:
