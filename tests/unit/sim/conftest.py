@@ -1,21 +1,21 @@
 """The robot of the configuration, for the tests of the simulator."""
 
-from pathlib import Path
-
 import pytest
+from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
+import preshape.entry_point  # noqa: F401 - registers what the configuration refers to
+from preshape.paths import project_root
 from sim.robots.description import RobotDescription
-
-ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture(scope="session")
 def robot_config(tmp_path_factory: pytest.TempPathFactory) -> DictConfig:
-    """conf/robot/lbr4_allegro.yaml with a fresh cache."""
-    robot = OmegaConf.load(ROOT / "conf" / "robot" / "lbr4_allegro.yaml")
-    return OmegaConf.create({"robot": robot, "paths": {"cache": str(tmp_path_factory.mktemp("cache"))}})
+    """The configuration of robot=lbr4_allegro with a fresh cache."""
+    choices = ["robot=lbr4_allegro", f"paths.cache={tmp_path_factory.mktemp('cache')}"]
+    with initialize_config_dir(str(project_root() / "conf"), version_base="1.3"):
+        return compose("collect", choices)
 
 
 @pytest.fixture(scope="session")
