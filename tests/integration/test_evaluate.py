@@ -5,7 +5,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pandas as pd
 import torch
+from mlflow import MlflowClient
 
 from preshape.checkpoints import save_weights
 from preshape.data.tables import read_data_set
@@ -29,7 +31,9 @@ def test_planners_compete_on_one_scene_and_a_page_shows_it(tmp_path: Path, alleg
     weights = tmp_path / "model.safetensors"
     save_weights(weights, model, data_hash="none", git_revision="none", metrics={})
     settings = ("evaluate.workers=1", "evaluate.filmed_scenes=1", "evaluator.recorder.every=150")
-    done = run(tmp_path, "sim/evaluate.py", f"weights={weights}", *settings, "evaluate.scenes=1")
+    done = run(
+        tmp_path, "sim/evaluate.py", f"weights={weights}", *settings, "evaluate.scenes=1", "tracking=none"
+    )
     assert done.returncode == 0, done.stderr
     folder = tmp_path / "outputs" / "evaluate" / "palm_points"
     summary = json.loads((folder / "evaluation.json").read_text())["planners"]
@@ -55,12 +59,30 @@ def test_planners_compete_on_one_scene_and_a_page_shows_it(tmp_path: Path, alleg
     assert shown.stdout.splitlines()[-1].endswith(str(page))
     assert "http://" not in page.read_text().replace("http://www.w3.org", "")
 
-    more = run(tmp_path, "sim/evaluate.py", f"weights={weights}", *settings, "evaluate.scenes=2")
+    store = [f"tracking.{name}={tmp_path / name}" for name in ("database", "artifacts")]
+    sweep = (f"weights={weights}", *settings, *store, "run_name=sweep", "evaluate.scenes=1,2", "--multirun")
+    more = run(tmp_path, "sim/evaluate.py", *sweep)
     assert more.returncode == 0, more.stderr
     assert "1 of 2 scenes are there" in more.stdout
-    longer = read_data_set(folder, allegro_space)[1]
-    assert longer.rows[: len(trials)].equals(trials.rows)
-    assert len(set(longer.scene_ids.tolist())) == 2
+    (table,) = (tmp_path / "outputs" / "evaluate" / "sweeps").glob("*/runs.csv")
+    rows = pd.read_csv(table)
+    assert set(rows["run"]) == {"scenes=1", "scenes=2"}
+    assert len(rows) == 2 * len(summary)
+    assert table.with_suffix(".md").read_text() in more.stdout
+    longer = read_data_set(
+        table.parents[2] / rows.set_index("run")["folder"]["scenes=2"].iloc[0], allegro_space
+    )
+    assert longer[1].rows[: len(trials)].equals(trials.rows)
+    assert len(longer[0]) == 2
+
+    client = MlflowClient(f"sqlite:///{tmp_path / 'database'}")
+    experiment = client.get_experiment_by_name("preshape/evaluations")
+    assert experiment is not None
+    runs = client.search_runs([experiment.experiment_id])
+    (parent,) = (found for found in runs if "sweep" in found.data.tags)
+    assert parent.data.tags["mlflow.note.content"] == table.with_suffix(".md").read_text()
+    assert len(runs) == 3
+    assert {found.info.status for found in runs} == {"FINISHED"}
 
 
 def test_weights_that_are_not_there_are_refused_before_any_work(tmp_path: Path) -> None:
