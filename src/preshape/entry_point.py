@@ -15,7 +15,7 @@ from omegaconf.errors import InterpolationKeyError
 
 from preshape.composition import check_composition, chosen_option, option_or
 from preshape.errors import InputError, bad_input_behind
-from preshape.interruption import EXIT_INTERRUPTED, MESSAGE, raise_interrupts
+from preshape.interruption import end_interrupted, raise_interrupts
 from preshape.paths import project_root
 from preshape.provenance import TYPED_COMMAND, typed_command
 from preshape.sweep_folders import sweep_group
@@ -71,7 +71,8 @@ def entry_point(config_name: str) -> Callable[[Callable[[DictConfig], None]], Ca
                 # Lightning answers an interrupt with an exit of its own
                 if isinstance(end, SystemExit) and not isinstance(end.__context__, KeyboardInterrupt):
                     raise
-                _end(MESSAGE, EXIT_INTERRUPTED)
+                sys.stdout.flush()
+                end_interrupted()
 
         return command
 
@@ -110,9 +111,5 @@ def _misuse(error: ConfigCompositionException | OverrideParseException) -> str:
 
 
 def _refuse(message: str) -> NoReturn:
-    _end(f"ERROR: {message}", EXIT_BAD_INPUT)
-
-
-def _end(message: str, status: int) -> NoReturn:
-    sys.stderr.write(message + "\n")
-    sys.exit(status)
+    sys.stderr.write(f"ERROR: {message}\n")
+    sys.exit(EXIT_BAD_INPUT)

@@ -9,6 +9,7 @@ import pytest
 
 COMMAND = """
 import os
+import signal
 import sys
 from pathlib import Path
 
@@ -20,10 +21,16 @@ import preshape.entry_point
 preshape.entry_point.project_root = lambda: Path(__file__).parent
 
 
+class Drawing:
+    def __del__(self) -> None:
+        os.kill(os.getpid(), signal.SIGSEGV)
+
+
 @preshape.entry_point.entry_point("command")
 def main(cfg: DictConfig) -> None:
     try:
         if cfg.interrupt:
+            drawing = Drawing()  # as a simulator's scene, which must not go while it is drawn
             raise KeyboardInterrupt
     except KeyboardInterrupt:
         if cfg.interrupt == "swallowed":
