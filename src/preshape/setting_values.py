@@ -44,12 +44,12 @@ ONE_OF = {
 """Settings that have few values, by the last part of their names."""
 NEEDED_PATHS = (
     *("output", "table", "folder", "data", "result", "results", "page", "card", "evaluation", "metrics"),
-    *("families", "effort", "runs"),
+    *("effort", "runs"),
 )
 """Settings that are files or folders and cannot be null, by the last part of their names."""
 PATHS = (
     *NEEDED_PATHS,
-    *("view", "rgb_file", "depth_file", "camera_file", "weights", "root", "first_training"),
+    *("view", "rgb_file", "depth_file", "camera_file", "weights", "root", "first_training", "families"),
 )
 """Settings that are files or folders, by the last part of their names."""
 OR_NULL = ("workers", "data.trials", "trials_learned", "poses_per_object", "shard", "density", "report.runs")
