@@ -1,12 +1,11 @@
 """The figures of a collection in one result file: how much, how fast, how sure."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from preshape.errors import InputError
-from preshape.files import read_json, write_json
+from preshape.evaluation.measured_files import read_figures
+from preshape.files import write_json
 from preshape.provenance import provenance
 
 ABOUT_TRIALS = ("objects", "scenes", "planned", "executed", "lifted", "rate", "low", "high", "seconds")
@@ -39,11 +38,11 @@ class CollectionFigures:
         Raises:
             InputError: if an input cannot be used, is about other trials, or the file cannot be written.
         """
-        dataset = _figures(self.dataset, "data", "seed", *ABOUT_TRIALS)
-        effort = _figures(self.effort, "executed", "seconds", "workers", "executed_per_hour")
-        crashes = _figures(self.crash_test, "kills", "tables", "differing_rows")
-        sensitivity = _figures(self.sensitivity, "data", "variants")
-        check = _figures(self.label_check, "data", "n", "disagreements")
+        dataset = read_figures(self.dataset, "data", "seed", *ABOUT_TRIALS)
+        effort = read_figures(self.effort, "executed", "seconds", "workers", "executed_per_hour")
+        crashes = read_figures(self.crash_test, "kills", "tables", "differing_rows")
+        sensitivity = read_figures(self.sensitivity, "data", "variants")
+        check = read_figures(self.label_check, "data", "n", "disagreements")
         for path, about in ((self.sensitivity, sensitivity["data"]), (self.label_check, check["data"])):
             if about != dataset["data"]:
                 raise InputError("The figures are about another table", where=path, fix="make them again")
@@ -66,12 +65,3 @@ class CollectionFigures:
             f"{figures['executed']} executed, {figures['lifted']} lifted, "
             f"{effort['executed_per_hour']:.0f} an hour with {effort['workers']} workers: {self.output}"
         )
-
-
-def _figures(path: str | Path, *names: str) -> Mapping[str, Any]:
-    """What a result file says under these names."""
-    content = read_json(path)
-    missing = [name for name in names if name not in content]
-    if missing:
-        raise InputError(f"The file does not say {', '.join(missing)}", where=path, fix="make it again")
-    return {name: content[name] for name in names}

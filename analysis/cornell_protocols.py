@@ -18,7 +18,7 @@ from preshape.cornell.protocols import DETECTIONS_FILE, PROTOCOLS
 from preshape.cornell.rectangle import GraspRectangle
 from preshape.evaluation.average_roc import average_roc_figure
 from preshape.evaluation.fold_summary import by_split, finished_folds, split_roc
-from preshape.files import read_json
+from preshape.evaluation.measured_files import read_figures
 
 PUBLISHED = {
     "Lenz et al. 2015": ("73.9", "75.6"),
@@ -107,7 +107,7 @@ def _detections(runs: Path, method: str) -> dict[int, dict[str, Any]]:
     """What a method proposed from four starts, by image; of object-wise folds where there are such."""
     found: dict[int, dict[str, Any]] = {}
     for path in sorted(runs.glob(f"*/{DETECTIONS_FILE}")):  # `unseen` comes after `scenes`, and stays
-        for own in read_json(path)["detections"]:
+        for own in read_figures(path, "detections")["detections"]:
             if (own["method"], own["starts"]) == (method, SHOWN_STARTS):
                 found[int(own["image"])] = own
     return found

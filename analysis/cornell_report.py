@@ -14,7 +14,8 @@ from preshape.cornell.data_set import CornellDataSet, read_cornell
 from preshape.cornell.folds import image_folds, object_folds
 from preshape.cornell.label_agreement import label_agreement
 from preshape.drawing.picture_files import save_picture
-from preshape.files import atomic_path, read_json, write_json
+from preshape.evaluation.measured_files import read_figures
+from preshape.files import atomic_path, write_json
 from preshape.provenance import provenance
 
 
@@ -51,7 +52,9 @@ class CornellReport:
             InputError: if the data set is not complete or damaged, or a file cannot be read or written.
         """
         protocols = (
-            read_json(self.results)["runs"] if self.root is None or Path(self.results).is_file() else []
+            read_figures(self.results, "runs")["runs"]
+            if self.root is None or Path(self.results).is_file()
+            else []
         )
         if protocols:
             put_section(Path(self.page), SECTION, results_section(protocols, self.results))

@@ -9,6 +9,7 @@ import pandas as pd
 from sklearn.metrics import roc_curve
 
 from preshape.errors import InputError
+from preshape.evaluation.measured_files import read_figures, read_predictions
 from preshape.files import atomic_path, read_json, write_json
 
 FIGURES = ("auc", "auc_low", "auc_high", "average_precision", "brier", "ece")
@@ -40,23 +41,19 @@ class CurveTables:
             fix = "choose a network that does, such as model=palm_points"
             raise InputError("The network does not predict success", where=run, fix=fix)
         tables = {
-            "learning": pd.DataFrame(read_json(run / "curves.json")["points"]),
+            "learning": pd.DataFrame(read_figures(run / "curves.json", "points")["points"]),
             "roc": self._roc(run / "predictions.parquet"),
             "reliability": _reliability(pd.DataFrame(metrics["reliability"])),
         }
         for name, table in tables.items():
             with atomic_path(output / f"{name}.csv") as temporary:
                 table.to_csv(temporary, index=False, float_format="%.6g")
-        planners = read_json(Path(self.evaluation) / "evaluation.json")["planners"]
+        planners = read_figures(Path(self.evaluation) / "evaluation.json", "planners")["planners"]
         write_json(output / "figures.json", _figures(metrics["scalars"], planners))
         return f"Curves of {run.name}: {output}"
 
     def _roc(self, file: Path) -> pd.DataFrame:
-        try:
-            predictions = pd.read_parquet(file)
-        except (OSError, ValueError) as error:
-            fix = "train the network again"
-            raise InputError(f"The predictions cannot be read: {error}", where=file, fix=fix) from error
+        predictions = read_predictions(file)
         false_positives, true_positives, _ = roc_curve(predictions["lifted"], predictions["success_prob"])
         return pd.DataFrame({"false_positive_rate": false_positives, "true_positive_rate": true_positives})
 

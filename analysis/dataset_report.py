@@ -18,7 +18,8 @@ from analysis.results_page import put_section
 from analysis.wording import plain_name
 from preshape.data.tables import data_hash, read_data_set
 from preshape.data.trial import GraspType
-from preshape.files import read_json, write_json
+from preshape.evaluation.measured_files import read_figures
+from preshape.files import write_json
 from preshape.grasps.space import GraspSpace
 from preshape.provenance import command_line, git_revision, provenance
 
@@ -38,6 +39,10 @@ PICTURES = {
     "table": "Shares of executed and of lifted grasps over the object's place on the table",
     "durations": "How long the physics of a trial takes",
 }
+
+LABEL_CHECK = ("n", "seed", "disagreements", "how", "git_revision", "repeated_differently")
+SENSITIVITY = ("command", "git_revision", "seed", "variants")
+"""What the report takes from the result files."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,9 +79,10 @@ class DatasetReport:
         """
         scenes, trials = read_data_set(self.data, self.space)
         grasps = grasp_frame(scenes, trials, read_families(self.families))
+        check = None if self.label_check is None else read_figures(self.label_check, *LABEL_CHECK)
+        flips = None if self.sensitivity is None else read_figures(self.sensitivity, *SENSITIVITY)
         figures = {"data": data_hash(self.data), **summary(grasps)}
-        if self.label_check is not None:
-            check = read_json(self.label_check)
+        if check is not None:
             figures["label_check"] = {key: check[key] for key in ("n", "seed", "disagreements", "how")}
             put_section(Path(self.card), "label_check", "\n".join(_label_check(check)))
         write_json(self.output, provenance(self.seed) | figures)
@@ -84,9 +90,8 @@ class DatasetReport:
         for name, figure in self._figures(grasps).items():
             save_chart(figure, pictures / f"dataset_{name}.png")
         put_section(Path(self.card), "balance", "\n".join(self._balance(figures)))
-        if self.sensitivity is not None:
-            result = read_json(self.sensitivity)
-            put_section(Path(self.card), "sensitivity", "\n".join(_sensitivity(result)))
+        if flips is not None:
+            put_section(Path(self.card), "sensitivity", "\n".join(_sensitivity(flips)))
         put_section(Path(self.page), "dataset", "\n".join(self._summary(figures)))
         lifted, executed = figures["lifted"], figures["executed"]
         return f"Lifted {lifted} of {executed} executed trials. Card: {self.card}, figures: {self.output}"

@@ -13,6 +13,7 @@ from analysis.planning_runs import paired_tests, planner_run
 from analysis.planning_tables import object_lines, reliability_lines, round_lines, run_lines, test_lines
 from analysis.results_page import put_section
 from preshape.errors import InputError
+from preshape.evaluation.measured_files import read_figures
 from preshape.files import read_json, write_json
 from preshape.grasps.space import GraspSpace
 from preshape.provenance import provenance
@@ -73,7 +74,9 @@ class PlanningReport:
         return f"Lifted: {lifted}. Result file: {self.output}, page: {self.page}"
 
     def _rounds(self) -> list[dict[str, Any]]:
-        found = [read_json(path) for path in self.improvements if Path(path).is_file()]
+        found = [
+            read_figures(path, "acquisition", "rounds") for path in self.improvements if Path(path).is_file()
+        ]
         return [{"acquisition": one["acquisition"], **entry} for one in found for entry in one["rounds"]]
 
     def _lines(self, content: Mapping[str, Any]) -> list[str]:

@@ -14,8 +14,10 @@ from preshape.cornell.detection import Detection, Detector
 from preshape.cornell.detection_rates import detection_rates
 from preshape.data.folds import FOLDS, SplitScheme
 from preshape.errors import InputError
+from preshape.evaluation.measured_files import read_figures, read_predictions
 from preshape.evaluation.metrics import classification_metrics
-from preshape.files import read_json, write_json
+from preshape.files import write_json
+from preshape.measuring import PREDICTIONS_FILE
 from preshape.models.success_model import SuccessModel
 from preshape.progress import Progress
 from preshape.training import METRICS_FILE, WEIGHTS_FILE
@@ -66,7 +68,7 @@ def evaluate_folds(group: Path, splits: Sequence[str], parts: Parts, detector: D
         detections = _detect(folder, data, model, detector, centres)
         content = {"detections": [own.to_dict() for own in detections]}
         write_json(folder / DETECTIONS_FILE, content)
-        predictions = pd.read_parquet(folder / "predictions.parquet")
+        predictions = read_predictions(folder / PREDICTIONS_FILE)
         outcomes.append(FoldOutcome(split, predictions, detections))
     return outcomes
 
@@ -90,7 +92,7 @@ def _detect(
     centres: dict[int, tuple[float, float]],
 ) -> list[Detection]:
     data.setup()
-    if read_json(folder / METRICS_FILE)["identity"]["data"] != data.data_hash:
+    if read_figures(folder / METRICS_FILE, "identity")["identity"].get("data") != data.data_hash:
         raise InputError(
             "The fold was trained with other data", where=folder, fix="train it again, or give its data"
         )

@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
-from preshape.errors import InputError
 from preshape.evaluation.average_roc import AverageRoc, Fold, average_roc, average_roc_figure
+from preshape.evaluation.measured_files import read_predictions
 from preshape.files import atomic_path, exclusive, read_json, write_json
 from preshape.provenance import provenance
 
@@ -51,12 +50,7 @@ class FoldResult:
         Raises:
             InputError: if the table of predictions cannot be read.
         """
-        path = self.folder / "predictions.parquet"
-        try:
-            table = pd.read_parquet(path)
-        except (OSError, ValueError) as error:
-            fix = "delete its folder and train the fold again"
-            raise InputError(f"The predictions cannot be read: {error}", where=path, fix=fix) from error
+        table = read_predictions(self.folder / "predictions.parquet")
         if "success_prob" not in table:
             return None
         return table["lifted"].to_numpy(dtype=bool), table["success_prob"].to_numpy(dtype=float)
