@@ -181,7 +181,7 @@ def inputs_of(commands: Commands) -> Iterator[Input]:
     for file in CORNELL_FILES:
         yield Input(*of("src/detect.py"), "dataset.root", inputs / "cornell", file)
     for file in ("model.safetensors", "model.safetensors.json", "metrics.json", "predictions.parquet"):
-        yield Input(*of("src/detect.py"), "runs", inputs / "folds", f"unseen_fold0/{file}")
+        yield Input(*of("src/detect.py"), "runs", commands.work / "folds", f"unseen_fold0/{file}")
     for command in ("sim/collect.py", "sim/contact_sheet.py"):
         yield Input(*of(command, "objects=mesh_folder"), "objects.root", inputs / "meshes")
     yield from Reports(commands.report, inputs)

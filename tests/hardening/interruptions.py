@@ -1,4 +1,4 @@
-"""Interrupt and kill commands at random moments, start them again, two at a time, elsewhere in the world.
+"""Interrupt and kill commands at random moments; start them again, two at a time or elsewhere in the world.
 
 `python tests/hardening/interruptions.py [TEXT ...]` counts what happens; with texts, only commands whose name
 holds one of them. What a command ends with must be what it ends with undisturbed.
@@ -93,13 +93,13 @@ def disturb(name: str, inputs: Path, place: Path) -> Count:
             time.sleep(rng.uniform(0, longest_s))
             _judge(running.stop(kind), kind, count)
             _check_whole(work, count)
-        _finish([Start(own, work)], own, work, expected, count)
-    own = JOBS[name](inputs, place / "pair")
-    _finish([Start(own, place / "pair") for _ in range(2)], own, place / "pair", expected, count)
-    count.pairs += 1
-    own = JOBS[name](inputs, place / "elsewhere")
-    _finish([Start(own, place / "elsewhere", ELSEWHERE)], own, place / "elsewhere", expected, count)
-    count.elsewhere += 1
+        if kind is signal.SIGINT:
+            again = [Start(own, work), Start(own, work)]
+            count.pairs += 1
+        else:
+            again = [Start(own, work, ELSEWHERE)]
+            count.elsewhere += 1
+        _finish(again, own, work, expected, count)
     log.info("%s: %.1f s undisturbed, %s", name, longest_s, count.faults or "nothing wrong")
     return count
 

@@ -27,7 +27,7 @@ class Job:
 JOBS: dict[str, Callable[[Path, Path], Job]] = {}
 
 
-def job(name: str, rounds: int = 3) -> Callable[[Callable[[Commands], tuple[Case, tuple[str, ...]]]], None]:
+def job(name: str, rounds: int = 2) -> Callable[[Callable[[Commands], tuple[Case, tuple[str, ...]]]], None]:
     """Name a function that makes a command and what it ends with."""
 
     def keep(make: Callable[[Commands], tuple[Case, tuple[str, ...]]]) -> None:
@@ -77,19 +77,19 @@ def _detect(commands: Commands) -> tuple[Case, tuple[str, ...]]:
 
 @job("render")
 def _render(commands: Commands) -> tuple[Case, tuple[str, ...]]:
-    shipped = ("dataset.data.trials=12", "dataset.data.views.maker.workers=1")
+    shipped = ("dataset.data.trials=30", "dataset.data.views.maker.workers=1")
     case = Case("", "src/render.py", (*commands.places, *shipped))
     return case, ("outputs/render/allegro_grocery.json",)
 
 
-@job("collect", rounds=2)
+@job("collect", rounds=1)
 def _collect(commands: Commands) -> tuple[Case, tuple[str, ...]]:
     output = f"collect.output={commands.work / 'table'}"
     case = Case("", "sim/collect.py", (*commands.usual["sim/collect.py"], "collect.trials=3", output))
     return case, ("table/scenes.parquet", "table/trials.parquet")
 
 
-@job("evaluate", rounds=2)
+@job("evaluate", rounds=1)
 def _evaluate(commands: Commands) -> tuple[Case, tuple[str, ...]]:
     case = Case("", "sim/evaluate.py", commands.usual["sim/evaluate.py"])
     folder = "outputs/evaluate/palm_points"
@@ -138,7 +138,7 @@ def _write_cornell(commands: Commands) -> tuple[Case, tuple[str, ...]]:
     return Case("", "sim/write_cornell.py", commands.usual["sim/write_cornell.py"]), ("written",)
 
 
-@job("report=dataset")
+@job("report_dataset")
 def _dataset(commands: Commands) -> tuple[Case, tuple[str, ...]]:
     inputs = commands.inputs
     given = {"data": inputs / "table", "families": inputs / "grocery.csv"}
@@ -146,7 +146,7 @@ def _dataset(commands: Commands) -> tuple[Case, tuple[str, ...]]:
     return Case("", "analysis/report.py", arguments), ("report/output",)
 
 
-@job("report=demo")
+@job("report_demo")
 def _demo(commands: Commands) -> tuple[Case, tuple[str, ...]]:
     inputs = commands.inputs
     given = {"metrics": inputs / "metrics.json", "evaluation": inputs / "evaluation"}
@@ -155,26 +155,26 @@ def _demo(commands: Commands) -> tuple[Case, tuple[str, ...]]:
     return Case("", "analysis/report.py", arguments), ("report.html",)
 
 
-@job("report=planning")
+@job("report_planning")
 def _planning(commands: Commands) -> tuple[Case, tuple[str, ...]]:
     seen = f"report.conditions.seen={commands.inputs / 'evaluation'}"
     return Case("", "analysis/report.py", (*commands.report("planning"), seen)), ("report/output",)
 
 
-@job("report=learning")
+@job("report_learning")
 def _learning(commands: Commands) -> tuple[Case, tuple[str, ...]]:
     arguments = commands.report("learning", runs=commands.inputs / "sweep")
     return Case("", "analysis/report.py", arguments), ("report/output",)
 
 
-@job("report=curves")
+@job("report_curves")
 def _curves(commands: Commands) -> tuple[Case, tuple[str, ...]]:
     inputs = commands.inputs
     given = {"run": inputs / "sweep/palm_points/unseen_fold0", "evaluation": inputs / "evaluation"}
     return Case("", "analysis/report.py", commands.report("curves", **given)), ("report/output",)
 
 
-@job("report=cornell")
+@job("report_cornell")
 def _cornell(commands: Commands) -> tuple[Case, tuple[str, ...]]:
     given = {"root": commands.inputs / "cornell", "runs": "null", "shown": 1, "compared": 1}
     nowhere = f"report.results={commands.work / 'no_results.json'}"
@@ -182,7 +182,7 @@ def _cornell(commands: Commands) -> tuple[Case, tuple[str, ...]]:
     return Case("", "analysis/report.py", arguments), ("report/output",)
 
 
-@job("report=paper")
+@job("report_paper")
 def _paper(commands: Commands) -> tuple[Case, tuple[str, ...]]:
     page = f"report.output={commands.work / 'report.html'}"
     return Case("", "analysis/report.py", (*commands.report("paper"), page)), ("report.html",)

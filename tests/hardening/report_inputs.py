@@ -70,20 +70,21 @@ class Reports:
             yield Input(REPORT, demo, "report.evaluation", evaluation, file)
         yield Input(REPORT, demo, "report.metrics", metrics)
         first = self._arguments("first_pass", data=self._inputs / "table", **both)
-        yield Input(REPORT, first, "report.evaluation", evaluation)
-        yield Input(REPORT, self._arguments("gripper"), "report.conditions.fitting", evaluation)
+        yield Input(REPORT, first, "report.evaluation", evaluation, "trials.parquet")
+        gripper = self._arguments("gripper")
+        yield Input(REPORT, gripper, "report.conditions.fitting", evaluation, "trials.parquet")
         planning = self._arguments("planning")
         seen = f"report.conditions.seen={evaluation}"
-        yield Input(REPORT, planning, "report.conditions.seen", evaluation)
+        yield Input(REPORT, planning, "report.conditions.seen", evaluation, "trials.parquet")
         rounds = self._inputs / "improvement.json"
-        yield Input(REPORT, (*planning, seen), "report.improvements", rounds, value="[{}]")
+        yield Input(REPORT, (*planning, seen), "report.improvements", rounds, value="[{}]", may_do=True)
 
     def _of_data(self) -> Iterator[Input]:
         table, families = self._inputs / "table", self._inputs / "grocery.csv"
         given = {"data": table, "families": families, "sensitivity": "null", "label_check": "null"}
         data = self._arguments("dataset", **given)
         yield Input(REPORT, data, "report.data", table)
-        yield Input(REPORT, data, "report.families", families)
+        yield Input(REPORT, data, "report.families", families, may_do=True)  # a shorter list is one, too
         for key in ("sensitivity", "label_check"):
             yield Input(REPORT, data, f"report.{key}", RESULTS / f"{key}.json")
         yield Input(REPORT, self._arguments("objects", data=table), "report.data", table)
