@@ -77,7 +77,7 @@ def _detect(commands: Commands) -> tuple[Case, tuple[str, ...]]:
 
 @job("render")
 def _render(commands: Commands) -> tuple[Case, tuple[str, ...]]:
-    shipped = ("dataset.data.trials=30", "dataset.data.views.maker.workers=1")
+    shipped = ("dataset.data.trials=60", "dataset.data.views.maker.workers=1")
     case = Case("", "src/render.py", (*commands.places, *shipped))
     return case, ("outputs/render/allegro_grocery.json",)
 
