@@ -11,6 +11,7 @@ from analysis.training_metrics import read_training_metrics
 from preshape.data.tables import read_data_set
 from preshape.data.trial import Face
 from preshape.data.trial_table import TrialTable
+from preshape.errors import InputError
 from preshape.files import write_json
 from preshape.grasps.space import GraspSpace
 from preshape.provenance import provenance
@@ -32,7 +33,7 @@ class FirstPass:
     """
 
     data: str
-    metrics: str
+    metrics: str | None
     evaluation: str
     output: str
     space: GraspSpace
@@ -43,6 +44,10 @@ class FirstPass:
         Raises:
             InputError: if one of the inputs cannot be used, or the file cannot be written.
         """
+        if self.metrics is None:
+            raise InputError(
+                "The first pass has no training", where="report.metrics=null", fix="give its metrics.json"
+            )
         trials = read_data_set(self.data, self.space)[1]
         auc = read_training_metrics(self.metrics)
         evaluation = read_evaluation(self.evaluation, self.space)

@@ -52,7 +52,10 @@ PATHS = (
     *("view", "rgb_file", "depth_file", "camera_file", "weights", "root", "first_training", "families"),
 )
 """Settings that are files or folders, by the last part of their names."""
-OR_NULL = ("workers", "data.trials", "trials_learned", "poses_per_object", "shard", "density", "report.runs")
+OR_NULL = (
+    *("workers", "data.trials", "trials_learned", "poses_per_object", "shard", "density"),
+    *("report.runs", "report.metrics"),
+)
 """Those that may be null, by the end of their names."""
 KINDS: tuple[tuple[tuple[type, ...], str], ...] = (
     ((bool,), "true or false"),
