@@ -100,6 +100,11 @@ class Bounds:
         inside: Float64[np.ndarray, "*n s d"] = np.clip(theta, self.lower, self.upper)
         return inside
 
+    def drawn(self, count: int, seed: int) -> Float64[np.ndarray, "{count} s d"]:
+        """Points that are evenly distributed in each box; the same seed draws the same ones."""
+        uniform = np.random.default_rng(seed).random((count, *self.lower.shape))
+        return self.project(self.lower + uniform * (self.upper - self.lower))
+
     def blocks(
         self, theta: Float64[np.ndarray, "s d"], direction: Float64[np.ndarray, "s d"]
     ) -> Bool[np.ndarray, "s d"]:

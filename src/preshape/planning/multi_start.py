@@ -36,8 +36,7 @@ class MultiStart:
         """See `Planner`."""
         begin = perf_counter()
         judged = BestSoFar(objective, initial, bounds)
-        uniform = np.random.default_rng(self.seed).random((self.samples, *initial.shape))
-        drawn = bounds.project(bounds.lower + uniform * (bounds.upper - bounds.lower))
+        drawn = bounds.drawn(self.samples, self.seed)
         best = np.argsort(-judged.see(drawn), axis=0, kind="stable")[: self.climbed]
         starts = np.concatenate((initial[None], np.take_along_axis(drawn, best[:, :, None], axis=0)))
         count, owners, dim = starts.shape

@@ -28,6 +28,5 @@ class SamplingPlanner:
     def plan(self, objective: Objective, initial: Float64[np.ndarray, "s d"], bounds: Bounds) -> PlanResult:
         """See `Planner`."""
         best = BestSoFar(objective, initial, bounds)
-        uniform = np.random.default_rng(self.seed).random((self.samples_per_start, *initial.shape))
-        best.see(bounds.project(bounds.lower + uniform * (bounds.upper - bounds.lower)))
+        best.see(bounds.drawn(self.samples_per_start, self.seed))
         return best.result()
