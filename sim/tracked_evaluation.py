@@ -1,6 +1,5 @@
 """One evaluation as a user asked for it, alone or as a run of a sweep, and its record."""
 
-import hashlib
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +8,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from preshape.provenance import command_line, device_name, git_revision
 from preshape.run_table import join_table, sweep_folder
-from preshape.tracking import MULTIRUN_TAG, SweepMember, Tracking
+from preshape.tracking import MULTIRUN_TAG, SweepMember, Tracking, content_digest
 from sim.configured_evaluation import run_evaluation
 from sim.evaluation import SUMMARY_FILE
 from sim.evaluation_summary import PlannerSummary
@@ -33,7 +32,7 @@ def tracked_evaluation(cfg: DictConfig, output: Path, sweeps: Path | None) -> li
     member = None
     if sweep is not None:
         tags[MULTIRUN_TAG] = sweep.name
-        member = SweepMember(sweep.name, _digest(str(sweep)), _digest(config), trained=False)
+        member = SweepMember(sweep.name, content_digest(str(sweep)), content_digest(config), trained=False)
     tracking: Tracking = instantiate(cfg.tracking)
     with tracking.run(output.name, config, tags, member) as run:
         summary = run_evaluation(cfg, output)
@@ -53,7 +52,3 @@ def _figures(summary: list[PlannerSummary]) -> dict[str, float]:
         for planner in summary
         for name in ("executed", "lifted", "rate", "low", "high", "predicted")
     }
-
-
-def _digest(content: Any) -> str:
-    return hashlib.sha256(repr(content).encode()).hexdigest()[:16]

@@ -1,5 +1,6 @@
 """Keeping runs where they can be compared: MLflow, or nowhere."""
 
+import hashlib
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
@@ -106,3 +107,8 @@ class NoTracking:
     ) -> Iterator[TrackedRun]:
         """A run that nobody keeps."""
         yield UntrackedRun()
+
+
+def content_digest(content: Any) -> str:
+    """Digest by which a member of a sweep, or all of the sweep, is known again."""
+    return hashlib.sha256(repr(content).encode()).hexdigest()[:16]

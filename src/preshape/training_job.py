@@ -1,6 +1,5 @@
 """One training as a user asked for it, alone or as a fold of a sweep that may be started again."""
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +15,14 @@ from preshape.models.success_model import GraspNetwork, SuccessModel
 from preshape.provenance import command_line, device_name, git_revision
 from preshape.run_table import join_table, sweep_folder
 from preshape.source_digest import source_digest
-from preshape.tracking import MULTIRUN_TAG, NoTracking, SweepMember, TrackedRun, Tracking
+from preshape.tracking import (
+    MULTIRUN_TAG,
+    NoTracking,
+    SweepMember,
+    TrackedRun,
+    Tracking,
+    content_digest,
+)
 from preshape.training import METRICS_FILE, WEIGHTS_FILE, TrainerSettings, is_first_process, keep_files, train
 
 DECISIVE = (
@@ -79,8 +85,8 @@ class TrainingJob:
         group, identity = self.folder.parent, description["identity"]
         member = SweepMember(
             name=group.name,
-            digest=_digest((str(group), identity["settings"], identity["data"])),
-            member_digest=_digest(identity),
+            digest=content_digest((str(group), identity["settings"], identity["data"])),
+            member_digest=content_digest(identity),
             trained=self._is_trained(identity),
         )
         sweep = sweep_folder(group.parent, command_line())
@@ -142,9 +148,9 @@ class TrainingJob:
             "name": self.name,
             **self.about,
             "identity": {
-                "settings": _digest(_without(self.unresolved, WITHOUT_INFLUENCE)),
+                "settings": content_digest(_without(self.unresolved, WITHOUT_INFLUENCE)),
                 "data": data.data_hash,
-                "code": _digest(code),
+                "code": content_digest(code),
                 **_identity_of_start(settings.learning.start),
             },
         }
@@ -205,7 +211,3 @@ def _without(config: Mapping[str, Any], keys: tuple[str, ...], prefix: str = "")
         for key, value in config.items()
         if f"{prefix}{key}" not in keys
     }
-
-
-def _digest(content: Any) -> str:
-    return hashlib.sha256(repr(content).encode()).hexdigest()[:16]
