@@ -7,7 +7,8 @@ from pathlib import Path
 from analysis import learning_charts as charts
 from analysis import learning_tables as tables
 from analysis.chart_files import save_chart
-from analysis.learning_runs import LearningRun, read_runs
+from analysis.fold_record import FoldRecord
+from analysis.learning_runs import LearningRun, measured_folds, read_runs
 from analysis.results_page import put_section
 from preshape.evaluation.average_roc import average_roc_figure
 from preshape.evaluation.fold_summary import split_roc
@@ -20,10 +21,14 @@ Key = tuple[str, str]
 
 @dataclass(frozen=True)
 class LearningReport:
-    """The report of all sweeps that were finished.
+    """The report of all folds that were finished, here or elsewhere. Groups that are not named are left out.
 
     Args:
-        runs: folder with the groups of the sweeps, as `src/train.py --multirun` makes it.
+        runs: folder with the groups of the sweeps, as `src/train.py --multirun` makes it; it may be missing.
+            None: only the record is read.
+        record: folder with what the report needs of finished folds, wherever they were trained. Those of
+            `runs` are put into it, in the place of recorded ones with the same name, or with other settings
+            or data.
         paper: groups of the paper's networks, trained as in the paper, by `config_cnn`, `patches_cnn` and
             `regression`.
         default: group of the default model.
@@ -36,7 +41,8 @@ class LearningReport:
         seed: seed of the trainings, for the result file.
     """
 
-    runs: str
+    runs: str | None
+    record: str
     paper: Mapping[str, str]
     default: str
     ablations: Mapping[str, Mapping[str, str]]
@@ -50,9 +56,23 @@ class LearningReport:
         """Write everything and say what came out.
 
         Raises:
-            InputError: if there is no sweep, a file cannot be read, or one cannot be written.
+            InputError: if there is no fold, a file cannot be read, or one cannot be written.
         """
-        runs = {(run.group, run.split): run for run in read_runs(self.runs)}
+        record = FoldRecord(Path(self.record))
+        with record.locked():
+            measured = {} if self.runs is None else measured_folds(self.runs, self._groups())
+            for group, folds in measured.items():
+                record.take(group, folds)
+            return self._write(read_runs(record, self._groups()))
+
+    def _groups(self) -> set[str]:
+        """Names of all groups that the report shows."""
+        compared = (group for groups in self.ablations.values() for group in groups.values())
+        curves = (group for sweep in self.learning_curves.values() for group in tables.curve_groups(sweep))
+        return {*self.paper.values(), self.default, *self.calibrated, *compared, *curves}
+
+    def _write(self, found: Sequence[LearningRun]) -> str:
+        runs = {(run.group, run.split): run for run in found}
         figures = [run.figures() for run in runs.values()]
         write_json(self.output, {**provenance(self.seed), "runs": figures})
         parts = [

@@ -1,13 +1,15 @@
 """Sweeps of `src/train.py` as they lie in their folders."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float
 
+from analysis.fold_files import BASELINES, OF_GRASPS, decisive_identity, read_fold
+from analysis.fold_record import FoldRecord
 from analysis.roc_curves import stored_curve
 from preshape.errors import InputError
 from preshape.evaluation.fold_summary import (
@@ -18,7 +20,7 @@ from preshape.evaluation.fold_summary import (
     split_figures,
     split_roc,
 )
-from preshape.files import read_json
+from preshape.evaluation.measured_files import read_figures
 
 SUCCESS_METRICS = {
     "auc": "auc",
@@ -34,8 +36,7 @@ SUCCESS_METRICS = {
     "ece_before_calibration": "ece_before_calibration",
 }
 """Names in the result file, and in the files of the folds."""
-GRASP_METRICS = {name: name for name in ("palm_m", "palm_smallest_m", "orientation_rad", "joints_rad")}
-BASELINES = ("random", "constant")
+GRASP_METRICS = {name: name for name in OF_GRASPS}
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,27 +97,55 @@ class LearningRun:
         return np.concatenate(labels), np.concatenate(success_prob)
 
 
-def read_runs(folder: str | Path) -> list[LearningRun]:
-    """All runs of all sweeps below a folder, by name of their groups.
+def measured_folds(folder: str | Path, groups: Collection[str]) -> dict[str, list[FoldResult]]:
+    """The finished folds of sweeps by their groups; only those with settings and data of the last summary.
 
-    Of each group only folds with the settings and data of its last summary are taken.
+    Args:
+        folder: folder of the groups, as `src/train.py --multirun` makes it; it may be missing.
+        groups: names of those that are read.
 
     Raises:
-        InputError: if a file cannot be read, or there is no sweep.
+        InputError: if a file is missing, damaged, or not of its fold.
     """
-    runs = list(_runs(Path(folder)))
+    summaries = sorted(Path(folder).glob(f"*/{SUMMARY_FILE}"))
+    found = {path.parent.name: _summarised(path) for path in summaries if path.parent.name in groups}
+    return {group: folds for group, folds in found.items() if folds}
+
+
+def _summarised(summary: Path) -> list[FoldResult]:
+    identity = decisive_identity(read_figures(summary, "identity"), summary)
+    return [read_fold(fold.folder) for fold in finished_folds(summary.parent, identity)]
+
+
+def read_runs(record: FoldRecord, groups: Collection[str]) -> list[LearningRun]:
+    """The recorded runs of some groups, by the names of the groups.
+
+    Raises:
+        InputError: if a file is missing, damaged, or not of its fold, or there is no fold.
+    """
+    runs = [
+        LearningRun(group, split, _with_shared_figures(folds))
+        for group in record.groups()
+        if group in groups
+        for split, folds in by_split(record.folds(group)).items()
+    ]
     if not runs:
         raise InputError(
             "There is no finished fold of a sweep",
-            where=folder,
+            where=record.folder,
             fix="train with `python src/train.py --multirun split=seen,unseen fold=0,1,2,3,4`",
         )
     return runs
 
 
-def _runs(folder: Path) -> Iterator[LearningRun]:
-    for summary in sorted(folder.glob(f"*/{SUMMARY_FILE}")):
-        identity = read_json(summary)["identity"]
-        wanted = {key: identity[key] for key in ("settings", "data")}
-        for split, folds in by_split(finished_folds(summary.parent, wanted)).items():
-            yield LearningRun(summary.parent.name, split, folds)
+def _with_shared_figures(folds: Sequence[FoldResult]) -> list[FoldResult]:
+    """The folds without figures that not all of them have, since code that came later measures more."""
+    shared = set.intersection(*(set(fold.content["scalars"]) for fold in folds))
+    return [
+        replace(fold, content={**fold.content, "scalars": _chosen(fold.content["scalars"], shared)})
+        for fold in folds
+    ]
+
+
+def _chosen(scalars: Mapping[str, float], names: Collection[str]) -> dict[str, float]:
+    return {name: value for name, value in scalars.items() if name in names}

@@ -44,7 +44,7 @@ ONE_OF = {
 """Settings that have few values, by the last part of their names."""
 NEEDED_PATHS = (
     *("output", "table", "folder", "data", "result", "results", "page", "card", "evaluation", "metrics"),
-    *("effort", "runs"),
+    *("effort", "runs", "record"),
 )
 """Settings that are files or folders and cannot be null, by the last part of their names."""
 PATHS = (

@@ -23,10 +23,14 @@ from hypothesis import strategies as st
 from synthetic_cornell import write_cornell
 from synthetic_evaluation import write_evaluation
 from synthetic_finished_scenes import finished_scene
+from synthetic_folds import write_fold
 from synthetic_scenes import BoxRenderer, allegro_space, make_scene, write_data_set
 
 from analysis.dataset_grasps import read_families
 from analysis.evaluation_folder import read_evaluation
+from analysis.fold_record import FoldRecord
+from analysis.learning_charts import training_curves
+from analysis.learning_runs import read_runs
 from analysis.training_metrics import read_training_metrics
 from preshape.checkpoints import load_weights, save_weights, sidecar_path
 from preshape.cornell.image_files import read_colour, read_range
@@ -94,6 +98,13 @@ def use_evaluation(folder: Path) -> None:
     assert read_evaluation(folder / "evaluation", SPACE).lifted
 
 
+def use_fold_record(folder: Path) -> None:
+    runs = read_runs(FoldRecord(folder / "record"), ["paper"])
+    training_curves(runs)
+    for run in runs:
+        assert run.figures()["n"] == len(run.predictions()[0])
+
+
 def damaged_safetensors(content: bytes) -> st.SearchStrategy[bytes]:
     """As bytes, or with a changed head."""
     (length,) = struct.unpack("<Q", content[:8])
@@ -158,6 +169,9 @@ READERS = (
     of_file("plan.json", use_plan, damaged_json_text),
     Reader("evaluation/evaluation.json", use_evaluation, damaged_json_text),
     of_file("metrics.json", read_training_metrics, damaged_json_text),
+    Reader("record/paper/seen_fold0/metrics.json", use_fold_record, damaged_json_text),
+    Reader("record/paper/seen_fold0/curves.json", use_fold_record, damaged_json_text),
+    Reader("record/paper/seen_fold0/predictions.parquet", use_fold_record),
     of_file("families.csv", read_families, known=(lambda good: good[:-5] + b"\nlonely",)),
     of_file("cornell/01/pcd0100r.png", read_colour),
     of_file("cornell/01/pcd0100d.tiff", read_range),
@@ -189,6 +203,8 @@ def good(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_evaluation(folder / "evaluation", 1)
     (folder / "plan.json").write_bytes((folder / "evaluation/plans/0_inference.json").read_bytes())
     write_json(folder / "metrics.json", {"auc": {"value": 0.8, "low": 0.7, "high": 0.9}, "n": 9})
+    for fold in (0, 1):
+        write_fold(folder / "record" / "paper" / f"seen_fold{fold}")
     (folder / "families.csv").write_text("name,family\nbox_0,box\nbox_1,a_carton\n")
     write_cornell(folder / "cornell", n=1)
     block = SceneBlock(folder / "scenes.jsonl", range(8))

@@ -25,6 +25,7 @@ CONF = Path(__file__).parents[2] / "conf"
         ("collect.workers=true", "a whole number from 1 on"),
         ("collect.output=null", "a path"),
         ("report.effort=null", "a path"),
+        ("report.record=null", "a path"),
         ("runs=null", "a path"),
         ("planners.inference.method=null", "conf/"),
         ("dataset.data.folder=null", "a path"),
