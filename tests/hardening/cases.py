@@ -108,7 +108,7 @@ class Commands:
             "curves": ("output",),
             "first_pass": ("output",),
             "gripper": ("output", "page"),
-            "learning": ("output", "page"),
+            "learning": ("output", "page", "record"),
             "objects": ("page",),
             "paper": ("output",),
             "planning": ("output", "page"),

@@ -164,7 +164,7 @@ def _planning(commands: Commands) -> tuple[Case, tuple[str, ...]]:
 @job("report_learning")
 def _learning(commands: Commands) -> tuple[Case, tuple[str, ...]]:
     arguments = commands.report("learning", runs=commands.inputs / "sweep")
-    return Case("", "analysis/report.py", arguments), ("report/output",)
+    return Case("", "analysis/report.py", arguments), ("report/output", "report/record")
 
 
 @job("report_curves")

@@ -16,7 +16,7 @@ import trimesh
 from synthetic_cornell import write_cornell
 from synthetic_evaluation import write_evaluation
 from synthetic_scenes import BoxRenderer, allegro_space, make_scene, write_data_set
-from trained_folds import write_rectangle_folds, write_sweep
+from trained_folds import write_record, write_rectangle_folds, write_sweep
 
 from preshape.checkpoints import save_weights
 from preshape.data.tables import SCENES_FILE, TRIALS_FILE
@@ -69,6 +69,7 @@ def make_inputs(place: Path) -> None:
     write_cornell(place / "cornell", n=5, cloud=True)
     write_rectangle_folds(place / "folds", place / "cornell")
     write_sweep(place / "sweep")
+    write_record(place / "record", place / "sweep")
     _write_rectangles(place / "rectangles")
     (place / "meshes").mkdir()
     trimesh.creation.box((0.05, 0.06, 0.1)).export(place / "meshes" / "box.obj")

@@ -100,13 +100,15 @@ class Reports:
             yield Input(REPORT, paper, "report.results", RESULTS, name, may_do=True)
 
     def _of_trainings(self) -> Iterator[Input]:
-        sweep = self._inputs / "sweep"
+        sweep, record = self._inputs / "sweep", self._inputs / "record"
         fold = sweep / "palm_points" / "unseen_fold0"
         learning = self._arguments("learning", runs=sweep)
+        recorded = self._arguments("learning", runs="null")
         for file in ("metrics.json", "predictions.parquet", "curves.json"):
             unfinished = file == "metrics.json"  # and left out
             inner = f"palm_points/unseen_fold0/{file}"
             yield Input(REPORT, learning, "report.runs", sweep, inner, may_do=unfinished)
+            yield Input(REPORT, recorded, "report.record", record, inner, may_do=unfinished)
         evaluation = self._inputs / "evaluation"
         curves = self._arguments("curves", run=fold, evaluation=evaluation)
         for file in ("metrics.json", "predictions.parquet", "curves.json"):

@@ -2,23 +2,20 @@
 
 from pathlib import Path
 
-import numpy as np
-import pandas as pd
 import torch
 from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
+from synthetic_folds import write_fold, write_group
 
 import preshape.entry_point  # noqa: F401 - registers the resolvers
+from analysis.fold_record import FoldRecord
+from analysis.learning_runs import measured_folds
 from preshape.checkpoints import save_weights
 from preshape.data.folds import FOLDS
-from preshape.evaluation.baselines import random_baseline
-from preshape.evaluation.calibration import reliability_diagram
-from preshape.evaluation.fold_summary import summarise
-from preshape.evaluation.metrics import classification_metrics
-from preshape.files import write_json
-from preshape.measuring import PREDICTIONS_FILE, Measurement
 from preshape.paths import project_root
-from preshape.training import CURVES_FILE, METRICS_FILE, WEIGHTS_FILE
+from preshape.training import WEIGHTS_FILE
+
+ABOUT = {"experiment": "default", "model": "palm_points"}
 
 
 def write_rectangle_folds(place: Path, cornell: Path) -> None:
@@ -38,31 +35,17 @@ def write_rectangle_folds(place: Path, cornell: Path) -> None:
     for fold in range(FOLDS):
         folder = place / f"unseen_fold{fold}"
         save_weights(folder / WEIGHTS_FILE, model, data_hash=data.data_hash, git_revision="none", metrics={})
-        _write_measurement(folder, "unseen", fold, {"data": data.data_hash})
+        write_fold(folder, identity={"data": data.data_hash}, **ABOUT)
 
 
 def write_sweep(place: Path) -> None:
     """Write two folds as a sweep leaves them: what was measured, no weights."""
-    identity = {"settings": "s", "data": "d", "code": "c"}
-    for fold in range(2):
-        _write_measurement(place / "palm_points" / f"unseen_fold{fold}", "unseen", fold, identity)
-    summarise(place / "palm_points", identity)
+    write_group(place / "palm_points", "unseen_fold0", "unseen_fold1", **ABOUT)
 
 
-def _write_measurement(folder: Path, split: str, fold: int, identity: dict[str, str]) -> None:
-    rng = np.random.default_rng(fold)
-    success_prob = rng.uniform(size=60)
-    lifted = rng.uniform(size=60) < success_prob
-    numbers = np.arange(60)
-    folder.mkdir(parents=True, exist_ok=True)
-    columns = {"trial_id": numbers, "scene_id": numbers, "lifted": lifted, "success_prob": success_prob}
-    pd.DataFrame(columns).to_parquet(folder / PREDICTIONS_FILE)
-    metrics = classification_metrics(lifted, success_prob, rng=rng)
-    reliability = reliability_diagram(lifted, success_prob).to_dict()
-    measured = Measurement(
-        metrics, {"random": random_baseline(lifted, rng=rng)}, {"reliability": reliability}, {}
-    )
-    about = {"experiment": "default", "split": split, "fold": fold, "seed": 0, "model": "palm_points"}
-    sizes = {"trials": None, "trials_learned": None, "identity": identity}
-    write_json(folder / METRICS_FILE, {**about, **sizes, **measured.to_dict(), "scalars": measured.scalars()})
-    write_json(folder / CURVES_FILE, {"points": [{"iteration": i, "train_loss": 1 / i} for i in (1, 2)]})
+def write_record(place: Path, sweep: Path) -> None:
+    """Record the folds of a sweep, as the report about learning does."""
+    record = FoldRecord(place)
+    with record.locked():
+        for group, folds in measured_folds(sweep, [path.name for path in sweep.iterdir()]).items():
+            record.take(group, folds)
