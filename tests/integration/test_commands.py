@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
+from ready_python import ReadyPython
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = [
@@ -18,14 +19,10 @@ COMMANDS = [
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=str)
-def test_command_shows_its_configuration_anywhere(command: Path, tmp_path: Path) -> None:
-    shown = subprocess.run(
-        [sys.executable, ROOT / command, "--cfg", "job"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+def test_command_shows_its_configuration_anywhere(
+    command: Path, ready_python: ReadyPython, tmp_path: Path
+) -> None:
+    shown = ready_python.run(ROOT / command, "--cfg", "job", cwd=tmp_path)
     assert shown.returncode == 0, shown.stderr
     assert "paths:" in shown.stdout
     assert list(tmp_path.iterdir()) == []

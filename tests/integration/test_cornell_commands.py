@@ -2,31 +2,30 @@
 
 import json
 import subprocess
-import sys
 from pathlib import Path
 
+from ready_python import ReadyPython
 from synthetic_cornell import write_cornell
 
 from preshape.paths import project_root
 
 
-def run(script: str, place: Path, *overrides: str) -> "subprocess.CompletedProcess[str]":
-    command = [
-        *(sys.executable, str(project_root() / "src" / script)),
+def run(python: ReadyPython, script: str, place: Path, *overrides: str) -> "subprocess.CompletedProcess[str]":
+    settings = (
         *(override for override in overrides if override.startswith("--")),
         *(f"paths.{name}={place / name}" for name in ("cache", "outputs")),
         *("dataset=cornell", f"dataset.root={place / 'cornell'}", "model=patches_cnn", "tracking=none"),
         *(override for override in overrides if not override.startswith("--")),
-    ]
-    return subprocess.run(command, cwd=place, capture_output=True, text=True, timeout=280, check=False)
+    )
+    return python.run(project_root() / "src" / script, *settings, cwd=place)
 
 
-def test_folds_are_trained_and_detected_in(tmp_path: Path) -> None:
+def test_folds_are_trained_and_detected_in(ready_python: ReadyPython, tmp_path: Path) -> None:
     write_cornell(tmp_path / "cornell", n=5, cloud=False)
     small = ("learning.settings.iterations=3", "learning.settings.schedule=steps", "learning.batch_size=4")
     trained = run(
-        *("train.py", tmp_path, "--multirun", "split=unseen", "fold=0,1,2,3,4", "run_name=tiny"),
-        *("trainer.batches_per_epoch=3", *small),
+        *(ready_python, "train.py", tmp_path, "--multirun", "split=unseen", "fold=0,1,2,3,4"),
+        *("run_name=tiny", "trainer.batches_per_epoch=3", *small),
     )
     assert trained.returncode == 0, trained.stderr
     (group,) = (tmp_path / "outputs" / "train").glob("tiny*")
@@ -35,7 +34,7 @@ def test_folds_are_trained_and_detected_in(tmp_path: Path) -> None:
 
     result = tmp_path / "cornell.json"
     detected = run(
-        *("detect.py", tmp_path, f"runs='{group}'", "splits=[unseen]", f"output={result}"),
+        *(ready_python, "detect.py", tmp_path, f"runs='{group}'", "splits=[unseen]", f"output={result}"),
         *("detector.counts=[1,2]", "detector.planner.starts.count=2", "detector.grid.step_px=60"),
         "detector.grid.angles=2",
     )

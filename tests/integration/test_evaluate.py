@@ -2,12 +2,14 @@
 
 import json
 import subprocess
-import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pandas as pd
+import pytest
 import torch
 from mlflow import MlflowClient
+from ready_python import ReadyPython
 
 from preshape.checkpoints import save_weights
 from preshape.data.tables import read_data_set
@@ -15,25 +17,29 @@ from preshape.grasps.space import GraspSpace
 from preshape.models.palm_points import PalmPoints
 from preshape.paths import project_root
 
-
-def run(place: Path, script: str, *overrides: str) -> "subprocess.CompletedProcess[str]":
-    command = [
-        *(sys.executable, str(project_root() / script)),
-        *(f"paths.{name}={place / name}" for name in ("cache", "outputs")),
-        *overrides,
-    ]
-    return subprocess.run(command, cwd=place, capture_output=True, text=True, timeout=280, check=False)
+Run = Callable[..., "subprocess.CompletedProcess[str]"]
 
 
-def test_planners_compete_on_one_scene_and_a_page_shows_it(tmp_path: Path, allegro_space: GraspSpace) -> None:
+@pytest.fixture
+def run(ready_python: ReadyPython, tmp_path: Path) -> Run:
+    """Run a command in the folder of the test."""
+
+    def run(script: str, *overrides: str) -> "subprocess.CompletedProcess[str]":
+        places = (f"paths.{name}={tmp_path / name}" for name in ("cache", "outputs"))
+        return ready_python.run(project_root() / script, *places, *overrides, cwd=tmp_path)
+
+    return run
+
+
+def test_planners_compete_on_one_scene_and_a_page_shows_it(
+    run: Run, tmp_path: Path, allegro_space: GraspSpace
+) -> None:
     torch.manual_seed(0)
     model = PalmPoints("palm_points", allegro_space.name, allegro_space.dim)
     weights = tmp_path / "model.safetensors"
     save_weights(weights, model, data_hash="none", git_revision="none", metrics={})
     settings = ("evaluate.workers=1", "evaluate.filmed_scenes=1", "evaluator.recorder.every=150")
-    done = run(
-        tmp_path, "sim/evaluate.py", f"weights={weights}", *settings, "evaluate.scenes=1", "tracking=none"
-    )
+    done = run("sim/evaluate.py", f"weights={weights}", *settings, "evaluate.scenes=1", "tracking=none")
     assert done.returncode == 0, done.stderr
     folder = tmp_path / "outputs" / "evaluate" / "palm_points"
     summary = json.loads((folder / "evaluation.json").read_text())["planners"]
@@ -50,7 +56,6 @@ def test_planners_compete_on_one_scene_and_a_page_shows_it(tmp_path: Path, alleg
 
     page = tmp_path / "page.html"
     shown = run(
-        tmp_path,
         "analysis/report.py",
         "report=demo",
         *(f"report.evaluation={folder}", "report.metrics=null", f"report.output={page}"),
@@ -61,7 +66,7 @@ def test_planners_compete_on_one_scene_and_a_page_shows_it(tmp_path: Path, alleg
 
     store = [f"tracking.{name}={tmp_path / name}" for name in ("database", "artifacts")]
     sweep = (f"weights={weights}", *settings, *store, "run_name=sweep", "evaluate.scenes=1,2", "--multirun")
-    more = run(tmp_path, "sim/evaluate.py", *sweep)
+    more = run("sim/evaluate.py", *sweep)
     assert more.returncode == 0, more.stderr
     assert "1 of 2 scenes are there" in more.stdout
     (table,) = (tmp_path / "outputs" / "evaluate" / "sweeps").glob("*/runs.csv")
@@ -85,8 +90,8 @@ def test_planners_compete_on_one_scene_and_a_page_shows_it(tmp_path: Path, alleg
     assert {found.info.status for found in runs} == {"FINISHED"}
 
 
-def test_weights_that_are_not_there_are_refused_before_any_work(tmp_path: Path) -> None:
-    done = run(tmp_path, "sim/evaluate.py", f"weights={tmp_path / 'missing.safetensors'}")
+def test_weights_that_are_not_there_are_refused_before_any_work(run: Run, tmp_path: Path) -> None:
+    done = run("sim/evaluate.py", f"weights={tmp_path / 'missing.safetensors'}")
     assert done.returncode == 2
     assert "missing.safetensors" in done.stderr
     assert "Traceback" not in done.stderr

@@ -2,7 +2,6 @@
 
 import json
 import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import torch
 from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 from PIL import Image
+from ready_python import ReadyPython
 from synthetic_scenes import BoxRenderer, make_scene
 
 from preshape.checkpoints import save_weights
@@ -23,11 +23,7 @@ from preshape.perception.observation import Observation
 from preshape.perception.view_files import save_view
 
 PLAN = Path(__file__).parents[2] / "src" / "plan.py"
-# As on a machine on which no simulator is installed: importing one fails.
-WITHOUT_SIMULATOR = (
-    "import runpy, sys; sys.modules |= {'sapien': None, 'sim': None, 'ompl': None};"
-    f"sys.argv[0] = {str(PLAN)!r}; runpy.run_path(sys.argv[0], run_name='__main__')"
-)
+SIMULATOR = ("sapien", "sim", "ompl")
 
 
 @pytest.fixture(scope="module")
@@ -46,13 +42,12 @@ Command = Callable[..., subprocess.CompletedProcess[str]]
 
 
 @pytest.fixture
-def plan(folder: Path, tmp_path: Path) -> Command:
-    """Run the command in the folder; its output goes to `out` of the test's own folder."""
+def plan(ready_python: ReadyPython, folder: Path, tmp_path: Path) -> Command:
+    """Run the command in the folder, as without a simulator; it writes to `out` of the test's own folder."""
 
     def run(*overrides: str) -> subprocess.CompletedProcess[str]:
         settings = (f"paths.outputs={tmp_path / 'runs'}", f"output={tmp_path / 'out'}")
-        command = [sys.executable, "-c", WITHOUT_SIMULATOR, *settings, *overrides]
-        return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=240, check=False)
+        return ready_python.run(PLAN, *settings, *overrides, cwd=folder, absent=SIMULATOR)
 
     return run
 

@@ -1,10 +1,9 @@
 """`python src/train.py` as a user runs it, on a tiny synthetic data set."""
 
 import json
-import os
 import pickle
 import subprocess
-import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import cloudpickle
@@ -12,6 +11,7 @@ import mlflow
 import pandas as pd
 import pytest
 from mlflow import MlflowClient
+from ready_python import ReadyPython
 from synthetic_scenes import BoxRenderer, make_scene, write_data_set
 
 from preshape.configured_planner import plan_view
@@ -30,31 +30,36 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
-def run_train(place: Path, *overrides: str) -> "subprocess.CompletedProcess[str]":
-    command = [
-        *(sys.executable, str(project_root() / "src" / "train.py")),
-        *(override for override in overrides if override.startswith("--")),
-        *(f"paths.{name}={place / name}" for name in ("data", "cache", "outputs")),
-        f"tracking.database={place / 'mlflow.db'}",
-        f"tracking.artifacts={place / 'mlartifacts'}",
-        "dataset.data.views.renderer={_target_:synthetic_scenes.BoxRenderer}",
-        "dataset.data.views.maker=null",
-        "dataset.data.hold_out.validation_fraction=0.25",
-        "learning.settings.iterations=6",
-        "learning.batch_size=8",
-        "trainer.batches_per_epoch=3",
-        *(override for override in overrides if not override.startswith("--")),
-    ]
-    environment = {**os.environ, "PYTHONPATH": str(FIXTURES)}
-    return subprocess.run(
-        command, cwd=place, env=environment, capture_output=True, text=True, timeout=280, check=False
-    )
+Run = Callable[..., "subprocess.CompletedProcess[str]"]
 
 
 @pytest.fixture(scope="module")
-def trained(place: Path) -> "subprocess.CompletedProcess[str]":
+def run_train(place: Path, ready_python: ReadyPython) -> Run:
+    """Train with little of everything."""
+
+    def run(*overrides: str) -> "subprocess.CompletedProcess[str]":
+        settings = (
+            *(override for override in overrides if override.startswith("--")),
+            *(f"paths.{name}={place / name}" for name in ("data", "cache", "outputs")),
+            f"tracking.database={place / 'mlflow.db'}",
+            f"tracking.artifacts={place / 'mlartifacts'}",
+            "dataset.data.views.renderer={_target_:synthetic_scenes.BoxRenderer}",
+            "dataset.data.views.maker=null",
+            "dataset.data.hold_out.validation_fraction=0.25",
+            "learning.settings.iterations=6",
+            "learning.batch_size=8",
+            "trainer.batches_per_epoch=3",
+            *(override for override in overrides if not override.startswith("--")),
+        )
+        return ready_python.run(project_root() / "src" / "train.py", *settings, cwd=place, modules=FIXTURES)
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def trained(run_train: Run) -> "subprocess.CompletedProcess[str]":
     """A finished training of the default network in `place`."""
-    done = run_train(place)
+    done = run_train()
     assert done.returncode == 0, done.stderr
     return done
 
@@ -107,16 +112,16 @@ def test_the_registered_model_is_the_network(place: Path, monkeypatch: pytest.Mo
         logged.predict(grasps)
 
 
-def test_a_sweep_from_an_empty_store_can_be_started_again(place: Path) -> None:
+def test_a_sweep_from_an_empty_store_can_be_started_again(run_train: Run, place: Path) -> None:
     sweep = ("run_name=sweep", "tracking.database=${paths.outputs}/sweep.db", "split=unseen", "fold=0,1")
-    begun = run_train(place, "--multirun", "hydra/launcher=joblib", "hydra.launcher.n_jobs=2", *sweep)
+    begun = run_train("--multirun", "hydra/launcher=joblib", "hydra.launcher.n_jobs=2", *sweep)
     assert begun.returncode == 0, begun.stderr
     (table,) = (place / "outputs" / "train" / "sweeps").glob("*/runs.md")
     assert table.read_text() in begun.stdout
     (summary,) = (place / "outputs" / "train").glob("sweep,*/summary.json")
     assert json.loads(summary.read_text())["command"].startswith("python src/train.py --multirun ")
     (summary.parent / "unseen_fold1" / "metrics.json").unlink()
-    again = run_train(place, "--multirun", *sweep)
+    again = run_train("--multirun", *sweep)
     assert again.returncode == 0, again.stderr
     assert again.stdout.count("had been trained before") == 1
 
@@ -136,8 +141,8 @@ def test_a_sweep_from_an_empty_store_can_be_started_again(place: Path) -> None:
     assert parent.data.tags["mlflow.note.content"] == table.read_text()
 
 
-def test_a_missing_table_is_refused(place: Path) -> None:
-    done = run_train(place, "run_name=refused", "paths.data=nowhere")
+def test_a_missing_table_is_refused(run_train: Run, place: Path) -> None:
+    done = run_train("run_name=refused", "paths.data=nowhere")
     assert done.returncode == 2, done.stderr
     assert "no table of scenes" in done.stderr
     assert "Traceback" not in done.stderr

@@ -1,7 +1,6 @@
 """Trials are drawn evenly, repeated under other settings, and compared with what was recorded."""
 
-import subprocess
-import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +9,7 @@ import pytest
 from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 from PIL import Image
+from ready_python import ReadyPython
 from synthetic_scenes import ORIGIN, allegro_space, make_scene, make_trial
 
 import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
@@ -125,37 +125,42 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def run(command: str, folder: Path, *overrides: str) -> str:
-    places = (f"table={folder}", f"paths.cache={folder}/cache", f"paths.outputs={folder}/outputs")
-    done = subprocess.run(
-        [sys.executable, project_root() / "sim" / f"{command}.py", *places, "workers=1", *overrides],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout + done.stderr
+Run = Callable[..., str]
 
 
-def test_the_same_settings_flip_nothing_and_finished_variants_are_kept(recorded: Path) -> None:
+@pytest.fixture
+def run(ready_python: ReadyPython, recorded: Path) -> Run:
+    """Run a command with the recorded table, to its good end; returns what it said."""
+
+    def run(command: str, *overrides: str) -> str:
+        places = (f"table={recorded}", f"paths.cache={recorded}/cache", f"paths.outputs={recorded}/outputs")
+        script = project_root() / "sim" / f"{command}.py"
+        done = ready_python.run(script, *places, "workers=1", *overrides, cwd=recorded)
+        assert done.returncode == 0, done.stderr
+        return done.stdout + done.stderr
+
+    return run
+
+
+def test_the_same_settings_flip_nothing_and_finished_variants_are_kept(run: Run, recorded: Path) -> None:
     overrides = (
         f"output={recorded}/flips.json",
         "trials=2",
         "only=[unchanged,object_displaced]",
         "trials_of.object_displaced=2",
     )
-    run("sensitivity", recorded, *overrides)
+    run("sensitivity", *overrides)
     variants = read_json(recorded / "flips.json")["variants"]
     assert (variants["unchanged"]["flips"], variants["unchanged"]["identical"]) == (0, 2)
     assert variants["object_displaced"]["soft_labels"] is not None
     kept = {path: path.stat().st_mtime_ns for path in (recorded / "cache" / "sensitivity").iterdir()}
     assert len(kept) == 2
-    assert "Repeating" not in run("sensitivity", recorded, *overrides)
+    assert "Repeating" not in run("sensitivity", *overrides)
     assert {path: path.stat().st_mtime_ns for path in kept} == kept
     assert read_json(recorded / "flips.json")["variants"] == variants
 
 
-def test_last_frames_stand_on_a_sheet_for_each_label(recorded: Path) -> None:
+def test_last_frames_stand_on_a_sheet_for_each_label(run: Run, recorded: Path) -> None:
     sheets = (
         f"output={recorded}/sheets",
         "trials=2",
@@ -163,7 +168,7 @@ def test_last_frames_stand_on_a_sheet_for_each_label(recorded: Path) -> None:
         "disagreements=0",
         "how=eye",
     )
-    said = run("last_frames", recorded, *sheets)
+    said = run("last_frames", *sheets)
     assert "0 ended otherwise than recorded" in said
     for name in ("lifted", "failed"):
         with Image.open(recorded / "sheets" / f"last_frames_{name}.webp") as sheet:
