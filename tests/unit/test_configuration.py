@@ -2,6 +2,7 @@
 
 import re
 import shlex
+from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -34,17 +35,24 @@ def compose_command(command: str, *overrides: str, with_hydra: bool = False) -> 
         return compose(command, list(overrides), return_hydra_config=with_hydra)
 
 
-def choices() -> Iterator[tuple[str, str, str]]:
-    """Every (command, group, option) that a user can choose."""
+def places_of_groups() -> dict[tuple[str, str], list[str]]:
+    """Where a command has an option of a group: `planner`, or `planner@planners.inference` and others."""
+    places = defaultdict(list)
     for command in COMMANDS:
-        chosen = compose_command(command, with_hydra=True).hydra.runtime.choices
-        for group in GROUPS:
-            for key in chosen:
-                if key.split("@")[0] == group.name:
-                    yield from ((command, key, option.stem) for option in sorted(group.glob("*.yaml")))
+        for key in compose_command(command, with_hydra=True).hydra.runtime.choices:
+            places[command, key.split("@")[0]].append(key)
+    return places
 
 
-CHOICES = sorted(set(choices()))
+PLACES = places_of_groups()
+CHOICES = sorted(
+    (command, group.name, option.stem)
+    for command in COMMANDS
+    for group in GROUPS
+    if (command, group.name) in PLACES
+    for option in group.glob("*.yaml")
+)
+"""Every (command, group, option) that a user can choose."""
 EXPERIMENT = "experiment"
 
 
@@ -56,6 +64,17 @@ def mesh_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for path in (folder / "box.obj", folder / "box" / "meshes" / "poisson.ply"):
         trimesh.creation.box((0.05, 0.06, 0.1)).export(path)
     return folder
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("cache")
+
+
+@pytest.fixture(scope="module")
+def built() -> set[str]:
+    """Settings of the parts that were built: many commands have the same ones."""
+    return set()
 
 
 def buildable(node: object) -> Iterator[DictConfig]:
@@ -93,7 +112,7 @@ def test_every_key_is_commented(path: Path) -> None:
 
 
 def test_no_option_is_unreachable() -> None:
-    reachable = {(key.split("@")[0], option) for _, key, option in CHOICES}
+    reachable = {(group, option) for _, group, option in CHOICES}
     assert {(group.name, path.stem) for group in GROUPS for path in group.glob("*.yaml")} == reachable
 
 
@@ -112,15 +131,19 @@ def test_every_experiment_composes_with_a_command(option: str) -> None:
     ("command", "group", "option"), [choice for choice in CHOICES if choice[1] != EXPERIMENT]
 )
 def test_every_option_composes_and_builds(
-    command: str, group: str, option: str, mesh_folder: Path, tmp_path: Path
+    command: str, group: str, option: str, mesh_folder: Path, cache: Path, built: set[str]
 ) -> None:
-    overrides = [f"{group}={option}", f"paths.cache={tmp_path}"]
-    given = {"objects.root": mesh_folder, "report.root": tmp_path, "dataset.root": tmp_path}
-    missing = missing_keys(OmegaConf.to_container(compose_command(command, *overrides)))
-    cfg = compose_command(command, *overrides, *(f"{key}={given[key]}" for key in missing if key in given))
-    name = group.split("@")[-1]
-    for part in buildable(OmegaConf.select(cfg, name)):
-        assert instantiate(part) is not None
+    places = PLACES[command, group]
+    overrides = [*(f"{place}={option}" for place in places), f"paths.cache={cache}"]
+    given = {"objects.root": mesh_folder, "report.root": cache, "dataset.root": cache}
+    cfg = compose_command(command, *overrides)
+    if missing := set(missing_keys(OmegaConf.to_container(cfg))) & set(given):
+        cfg = compose_command(command, *overrides, *(f"{key}={given[key]}" for key in missing))
+    for part in (part for place in places for part in buildable(OmegaConf.select(cfg, place.split("@")[-1]))):
+        settings = str(OmegaConf.to_container(part, resolve=True))
+        if settings not in built:
+            assert instantiate(part) is not None
+            built.add(settings)
 
 
 def documented_commands() -> Iterator[tuple[str, str]]:
