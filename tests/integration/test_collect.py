@@ -27,21 +27,15 @@ def collect_command(place: Path, *overrides: str) -> list[str]:
     ]
 
 
-def run_collect(place: Path, *overrides: str) -> "subprocess.CompletedProcess[str]":
-    command = collect_command(place, *overrides)
-    return subprocess.run(command, cwd=place, capture_output=True, text=True, timeout=280, check=False)
-
-
-def run_in(python: ReadyPython, place: Path, *overrides: str) -> "subprocess.CompletedProcess[str]":
-    """The same in a Python that has the libraries already, for a run without much work of its own."""
+def run_collect(python: ReadyPython, place: Path, *overrides: str) -> "subprocess.CompletedProcess[str]":
     _, script, *settings = collect_command(place, *overrides)
     return python.run(Path(script), *settings, cwd=place)
 
 
 @pytest.fixture(scope="module")
-def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def undisturbed(ready_python: ReadyPython, tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("undisturbed")
-    done = run_collect(place, *WANTED)
+    done = run_collect(ready_python, place, *WANTED)
     assert done.returncode == 0, done.stderr
     assert "starting 1 workers" in done.stdout
     assert str(place / "table") in done.stdout.splitlines()[-1]
@@ -66,7 +60,7 @@ def test_the_table_holds_what_was_asked_for(undisturbed: Path, allegro_space: Gr
 
 
 def test_a_killed_and_damaged_run_ends_with_the_table_of_an_undisturbed_one(
-    undisturbed: Path, allegro_space: GraspSpace, tmp_path: Path
+    ready_python: ReadyPython, undisturbed: Path, allegro_space: GraspSpace, tmp_path: Path
 ) -> None:
     with subprocess.Popen(collect_command(tmp_path, *WANTED), cwd=tmp_path) as killed:
         while not (finished := finished_scenes(tmp_path)) and killed.poll() is None:
@@ -77,7 +71,7 @@ def test_a_killed_and_damaged_run_ends_with_the_table_of_an_undisturbed_one(
     assert psutil.wait_procs(workers, timeout=10)[1] == []
     path, content = finished[0]
     path.write_bytes(content.replace(b'"heuristic"', b'"heretical"', 1))
-    done = run_collect(tmp_path, *WANTED)
+    done = run_collect(ready_python, tmp_path, *WANTED)
     assert done.returncode == 0, done.stderr
     assert f"{path}: 1 damaged" in done.stdout
     assert differences(undisturbed, tmp_path, allegro_space) == 0
@@ -89,9 +83,10 @@ def finished_scenes(place: Path) -> list[tuple[Path, bytes]]:
 
 
 def test_shards_end_with_the_table_of_one_process(
-    undisturbed: Path, allegro_space: GraspSpace, tmp_path: Path
+    ready_python: ReadyPython, undisturbed: Path, allegro_space: GraspSpace, tmp_path: Path
 ) -> None:
-    done = run_collect(tmp_path, "--multirun", "hydra/launcher=submitit_local", "shard=0,1", *WANTED)
+    shards = ("--multirun", "hydra/launcher=submitit_local", "shard=0,1")
+    done = run_collect(ready_python, tmp_path, *shards, *WANTED)
     assert done.returncode == 0, done.stderr
     assert differences(undisturbed, tmp_path, allegro_space) == 0
     owners = {content.split(b"}")[0] for _, content in finished_scenes(tmp_path)}
@@ -102,7 +97,7 @@ def test_a_finished_run_only_writes_its_table_again(
     ready_python: ReadyPython, undisturbed: Path, tmp_path: Path
 ) -> None:
     shutil.copytree(undisturbed / "cache", tmp_path / "cache")
-    done = run_in(ready_python, tmp_path, *WANTED)
+    done = run_collect(ready_python, tmp_path, *WANTED)
     assert done.returncode == 0, done.stderr
     for name in ("trials.parquet", "scenes.parquet"):
         tables = [place / "table" / name for place in (undisturbed, tmp_path)]
@@ -115,7 +110,7 @@ def test_a_folder_without_objects_is_refused(
 ) -> None:
     (tmp_path / "empty").mkdir()
     chosen = ("objects=mesh_folder", f"objects.root={tmp_path / 'empty'}")
-    done = run_in(ready_python, tmp_path, *launcher, *chosen)
+    done = run_collect(ready_python, tmp_path, *launcher, *chosen)
     assert done.returncode == 2
     assert str(tmp_path / "empty") in done.stderr
     assert "Traceback" not in done.stderr

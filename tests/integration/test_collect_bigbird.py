@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from ready_python import ReadyPython
 from synthetic_bigbird import box_mesh, write_meshes
 from test_collect import run_collect
 
@@ -11,11 +12,14 @@ from preshape.grasps.space import GraspSpace
 
 
 @pytest.mark.slow
-def test_scans_are_collected_from(tmp_path: Path, allegro_space: GraspSpace) -> None:
+def test_scans_are_collected_from(
+    ready_python: ReadyPython, tmp_path: Path, allegro_space: GraspSpace
+) -> None:
     write_meshes(tmp_path / "bigbird" / "red_box" / "processed", box_mesh())
     (tmp_path / "bigbird" / "listerine_green").mkdir()
     wanted = ("collect.trials=1", "collect.workers=1", "collect.block=1")
-    done = run_collect(tmp_path, "objects=bigbird", f"objects.root={tmp_path / 'bigbird'}", *wanted)
+    scans = ("objects=bigbird", f"objects.root={tmp_path / 'bigbird'}")
+    done = run_collect(ready_python, tmp_path, *scans, *wanted)
     assert done.returncode == 0, done.stderr
     assert (done.stdout + done.stderr).count("listerine_green") == 1
     scenes, trials = read_data_set(tmp_path / "table", allegro_space)

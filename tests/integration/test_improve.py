@@ -1,9 +1,9 @@
 """`python sim/improve.py` as a user runs it, with little of everything."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
+
+from ready_python import ReadyPython
 
 from preshape.data.tables import read_data_set
 from preshape.grasps.space import GraspSpace
@@ -22,13 +22,11 @@ LITTLE = (
 )
 
 
-def test_a_second_round_learns_from_what_the_first_planned(tmp_path: Path, allegro_space: GraspSpace) -> None:
-    command = [
-        *(sys.executable, str(project_root() / "sim" / "improve.py")),
-        *(f"paths.{name}={tmp_path / name}" for name in ("cache", "outputs")),
-        *LITTLE,
-    ]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=280, check=False)
+def test_a_second_round_learns_from_what_the_first_planned(
+    ready_python: ReadyPython, tmp_path: Path, allegro_space: GraspSpace
+) -> None:
+    places = (f"paths.{name}={tmp_path / name}" for name in ("cache", "outputs"))
+    done = ready_python.run(project_root() / "sim" / "improve.py", *places, *LITTLE, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     folder = tmp_path / "outputs" / "improve" / "planner_optimum"
     first, second = json.loads((folder / "improvement.json").read_text())["rounds"]

@@ -1,53 +1,15 @@
 """Scenes are finished although workers die: the grasps that end them are recorded as unstable."""
 
-import os
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from deadly_scenes import DEADLY_SCENE, DEADLY_TRIAL, build
 from synthetic_finished_scenes import finished_scene
 
-from preshape.data.scene import Scene
-from preshape.data.trial import Trial, TrialOutcome
+from preshape.data.trial import TrialOutcome
 from sim.collection import ExecutedTrials
-from sim.finished_scenes import FinishedScene
-from sim.finishing import GuardedRunner, WorkerSettings, finish_scenes
+from sim.finishing import WorkerSettings, finish_scenes
 from sim.scene_claims import SceneClaims
-from sim.trial import PlannedGrasp
-from sim.workers import BeginStep, Work
-
-DEADLY_TRIAL, DEADLY_SCENE = 10, 2
-
-
-class DeadlyRunner:
-    """Tries grasps with a known end, and dies of one of them."""
-
-    def __init__(self, trials: tuple[Trial, ...]) -> None:
-        self._trials = {trial.trial_id: trial for trial in trials}
-
-    def run(self, scene: Scene, grasp: PlannedGrasp, spectator: object = None) -> Trial:
-        if grasp.trial_id == DEADLY_TRIAL:
-            os.abort()
-        return self._trials[grasp.trial_id]
-
-
-def finish(scene_id: int, begin: BeginStep) -> FinishedScene:
-    if scene_id == DEADLY_SCENE:
-        os.abort()
-    known = finished_scene(scene_id)
-    assert known.scene is not None
-    runner = GuardedRunner(DeadlyRunner(known.trials), begin)
-    trials = [runner.run(known.scene, planned(trial)) for trial in known.trials]
-    return replace(known, trials=tuple(trials))
-
-
-def planned(trial: Trial) -> PlannedGrasp:
-    names = ("trial_id", "planner", "face", "initial", "planned", "success_prob", "seed")
-    return PlannedGrasp(**{name: getattr(trial, name) for name in names})
-
-
-def build() -> Work[int, FinishedScene]:
-    return finish
 
 
 def test_what_ends_two_workers_is_recorded_and_the_run_goes_on(tmp_path: Path) -> None:
