@@ -6,6 +6,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from preshape.models.ensemble import logit_of_mean
 from preshape.models.success_model import IMAGE_CHANNELS, SuccessModel, xavier_weights
 from preshape.perception.finite_differences import with_finite_differences
 from preshape.perception.grasp_patches import cut_patches
@@ -15,6 +16,8 @@ from preshape.perception.view_batch import ViewBatch
 PALM_PATCH = 200
 FINGER_PATCH = 100
 """Width and height of the paper's patches in pixels."""
+FINGER_KERNELS = (6, 3)
+"""Widths of the kernels of the fingers' two convolutions."""
 FEATURES = 32
 """Units of each patch's fully connected layer."""
 NORMAL_X, NORMAL_Y = 4, 5
@@ -28,17 +31,21 @@ class PatchesCNN(SuccessModel):
     The network learns of theta by these patches alone. With two fingers it has 315,961 parameters as the
     paper's, 319,001 with the joint layer; with four fingers and the joint layer it has 430,761.
 
+    There may be several such networks (`preshape.models.ensemble`), which all see the same patches.
+
     Args:
         name, grasp_space, theta_dim: see `GraspNetwork`.
         projection: where palm and fingertips of the hand appear in an image.
         joint_layer: whether a fully connected layer comes between the concatenated features and the logit.
         keep_prob: probability with which dropout keeps a unit of the fully connected layers.
         palm_patch, finger_patch: width and height of the patches in pixels of the views.
-        palm_kernels: widths of the kernels of the palm's two convolutions; those of the fingers' are 6 and 3.
+        palm_kernels: widths of the kernels of the palm's two convolutions; those of the fingers' are
+            `FINGER_KERNELS`.
         turned_normals: whether normals turn with the patches, so that a grasp that is turned together with
             what it is at looks the same; the paper's patches keep those of the camera frame.
         difference_steps: steps in theta (its units) of the finite differences by which the paper derives
             patches; None for the exact derivative.
+        members: number m of networks; the paper has one.
     """
 
     def __init__(
@@ -55,21 +62,24 @@ class PatchesCNN(SuccessModel):
         palm_kernels: Sequence[int] = (12, 6),
         turned_normals: bool = False,
         difference_steps: Sequence[float] | None = None,
+        members: int = 1,
     ) -> None:
         super().__init__(name, grasp_space, theta_dim)
         self.projection = projection
         self.palm_patch, self.finger_patch = palm_patch, finger_patch
         self.turned_normals, self.difference_steps = turned_normals, difference_steps
-        drop = 1.0 - keep_prob
-        self.palm_channel = _patch_channel(palm_patch, kernels=palm_kernels, drop=drop)
-        self.finger_channels = nn.ModuleList(
-            _patch_channel(finger_patch, kernels=(6, 3), drop=drop) for _ in range(projection.fingers)
+        self.members = nn.ModuleList(
+            _JoinedPatches(
+                _patch_channel(palm_patch, kernels=palm_kernels, drop=1.0 - keep_prob),
+                [
+                    _patch_channel(finger_patch, kernels=FINGER_KERNELS, drop=1.0 - keep_prob)
+                    for _ in range(projection.fingers)
+                ],
+                joint_layer=joint_layer,
+                drop=1.0 - keep_prob,
+            )
+            for _ in range(members)
         )
-        width = FEATURES * (1 + projection.fingers)
-        layers: list[nn.Module] = []
-        if joint_layer:
-            layers = [nn.Linear(width, FEATURES), nn.ReLU(), nn.Dropout(drop)]
-        self.joint_channel = nn.Sequential(*layers, nn.Linear(FEATURES if joint_layer else width, 1))
         self.apply(xavier_weights)
 
     def features(self, view: ViewBatch) -> ViewBatch:
@@ -78,18 +88,22 @@ class PatchesCNN(SuccessModel):
 
     def raw_head(self, features: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "b"]:
         """Logits of b grasps, from b views or from one that they share."""
+        return logit_of_mean(self._each(features, theta))
 
+    def member_logits(
+        self, view: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]
+    ) -> Float[Tensor, "m b"]:
+        """Logits of b grasps, each in its own view, by each of the m networks, before calibration."""
+        return self._each(self.features(view), theta)
+
+    def _each(self, features: ViewBatch, theta: Float[Tensor, "b d"]) -> Float[Tensor, "m b"]:
         def cut(theta: Tensor) -> tuple[Tensor, ...]:
             return self._patches(features, theta)
 
         steps = self.difference_steps
         palm, fingers = cut(theta) if steps is None else with_finite_differences(cut, theta, steps)
-        parts = [self.palm_channel(self._prepared(palm))]
-        parts += [
-            channel(self._prepared(fingers[:, finger])) for finger, channel in enumerate(self.finger_channels)
-        ]
-        logits: Tensor = self.joint_channel(torch.cat(parts, dim=1))
-        return logits.squeeze(1)
+        prepared = [self._prepared(patch) for patch in (palm, *fingers.unbind(dim=1))]
+        return torch.stack([member(prepared) for member in self.members])
 
     def _patches(self, features: ViewBatch, theta: Float[Tensor, "b d"]) -> tuple[Tensor, Tensor]:
         """The palm's patch (b, 8, h, w) and the f fingers' (b, f, 8, h, w) of each grasp."""
@@ -102,6 +116,28 @@ class PatchesCNN(SuccessModel):
 
     def _prepared(self, patch: Float[Tensor, "b 8 h w"]) -> Float[Tensor, "b 8 h w"]:
         return self.normalize_patch(patch).contiguous(memory_format=torch.channels_last)
+
+
+class _JoinedPatches(nn.Module):
+    """One of the networks: a channel for each patch, and what makes a logit of their features."""
+
+    def __init__(
+        self, palm_channel: nn.Module, finger_channels: Sequence[nn.Module], *, joint_layer: bool, drop: float
+    ) -> None:
+        super().__init__()
+        self.palm_channel = palm_channel
+        self.finger_channels = nn.ModuleList(finger_channels)
+        width = FEATURES * (1 + len(finger_channels))
+        layers: list[nn.Module] = []
+        if joint_layer:
+            layers = [nn.Linear(width, FEATURES), nn.ReLU(), nn.Dropout(drop)]
+        self.joint_channel = nn.Sequential(*layers, nn.Linear(FEATURES if joint_layer else width, 1))
+
+    def forward(self, patches: Sequence[Float[Tensor, "b 8 _ _"]]) -> Float[Tensor, "b"]:
+        channels = (self.palm_channel, *self.finger_channels)
+        features = [channel(patch) for channel, patch in zip(channels, patches, strict=True)]
+        logits: Tensor = self.joint_channel(torch.cat(features, dim=1))
+        return logits.squeeze(1)
 
 
 def _with_turned_normals(

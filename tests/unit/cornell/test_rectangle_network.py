@@ -44,6 +44,17 @@ def test_it_has_the_papers_number_of_parameters(joint_layer: bool, count: int) -
     assert sum(parameter.numel() for parameter in model.parameters()) == count
 
 
+def test_members_learn_by_themselves_and_their_probabilities_are_averaged(view: ViewBatch) -> None:
+    model = network(members=3)
+    logits = model.member_logits(view, THETA)
+    torch.testing.assert_close(torch.sigmoid(model(view, THETA)), torch.sigmoid(logits).mean(dim=0))
+    assert not torch.allclose(logits[0], logits[1])
+    logits[1].sum().backward()
+    for number, member in enumerate(model.members):
+        gradients = [parameter.grad for parameter in member.parameters() if parameter.grad is not None]
+        assert any(bool(gradient.any()) for gradient in gradients) == (number == 1)
+
+
 @pytest.mark.parametrize("step_px", [1, 4])
 def test_palm_and_fingertips_are_at_the_centre_and_the_jaws(step_px: int) -> None:
     corners = np.array([[100.0, 80.0], [130.0, 120.0], [114.0, 132.0], [84.0, 92.0]])
