@@ -23,7 +23,7 @@ from preshape.paths import project_root
         ("evaluate", "planning", "evaluate.poses_per_object", 20),
         ("evaluate", "planning", "run_name", "planning_seen"),
         ("train", "two_finger_unseen", "dataset.data.hold_out.split", "objects"),
-        ("train", "two_finger_unseen", "learning.settings.iterations", 3000),
+        ("train", "two_finger_unseen", "learning.settings.iterations", 6000),
         ("evaluate", "two_finger", "planners.inference.name", "rectangle_inference"),
         ("evaluate", "demo_planning", "run_name", "demo"),
         ("evaluate", "demo_planning", "evaluate.filmed_scenes", 6),
