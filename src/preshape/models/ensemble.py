@@ -5,10 +5,34 @@ uncertainty estimation using deep ensembles", NeurIPS 2017). A grasp that one of
 seldom deceives the others, which matters where a planner looks for just such grasps.
 """
 
+from abc import abstractmethod
+from typing import Any
+
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 from torch.nn.functional import logsigmoid
+
+from preshape.models.success_model import SuccessModel
+from preshape.perception.view_batch import ViewBatch
+
+
+class EnsembleModel(SuccessModel):
+    """Several networks in one, which learn by themselves and predict the mean of their probabilities."""
+
+    @abstractmethod
+    def each(self, features: Any, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "m b"]:
+        """Logits of b grasps by each of the m networks, from b views or from one that they share."""
+
+    def raw_head(self, features: Any, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "b"]:
+        """Logits of b grasps before calibration, from b views or from one that they share."""
+        return logit_of_mean(self.each(features, theta))
+
+    def member_logits(
+        self, view: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]
+    ) -> Float[Tensor, "m b"]:
+        """Logits of b grasps, each in its own view, by each of the m networks, before calibration."""
+        return self.each(self.features(view), theta)
 
 
 class MemberLinear(nn.Module):

@@ -8,8 +8,7 @@ from torch import Tensor, nn
 from torch.nn.functional import normalize
 
 from preshape.geometry.pose import rotation_from_euler_xyz
-from preshape.models.ensemble import MemberLinear, logit_of_mean
-from preshape.models.success_model import SuccessModel
+from preshape.models.ensemble import EnsembleModel, MemberLinear
 from preshape.perception.view_batch import ViewBatch
 
 LENGTH_M = 0.1
@@ -18,7 +17,7 @@ SURROUNDINGS = 7
 """Up, line of sight and height over the table: what is known of a grasp besides points and joints."""
 
 
-class PalmPoints(SuccessModel):
+class PalmPoints(EnsembleModel):
     """Points of the object in the frame of the palm, pooled by their maximum; 55,045 parameters for d = 14.
 
     Whether a grasp lifts depends on where the object is relative to the hand, and not on where both are in
@@ -78,17 +77,8 @@ class PalmPoints(SuccessModel):
         chosen = torch.randperm(total)[: self.points] if self.training else slice(self.points)
         return view._replace(points=view.points[:, chosen]).to(self.theta_mean)
 
-    def raw_head(self, features: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "b"]:
-        """Logits of b grasps before calibration, from b views or from one that they share."""
-        return logit_of_mean(self._each(features, theta))
-
-    def member_logits(
-        self, view: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]
-    ) -> Float[Tensor, "m b"]:
-        """Logits of b grasps, each in its own view, by each of the m networks, before calibration."""
-        return self._each(self.features(view), theta)
-
-    def _each(self, features: ViewBatch, theta: Float[Tensor, "b d"]) -> Float[Tensor, "m b"]:
+    def each(self, features: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "m b"]:
+        """See `EnsembleModel`."""
         palm, rotation = theta[:, :3], rotation_from_euler_xyz(theta[:, 3:6])
         context = self._context(features.table, theta, rotation)
         # W q + c of all points p, with W q = W R^T p - W R^T t: points of a shared view are not copied.

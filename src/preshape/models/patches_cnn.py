@@ -6,8 +6,8 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from preshape.models.ensemble import logit_of_mean
-from preshape.models.success_model import IMAGE_CHANNELS, SuccessModel, xavier_weights
+from preshape.models.ensemble import EnsembleModel
+from preshape.models.success_model import IMAGE_CHANNELS, xavier_weights
 from preshape.perception.finite_differences import with_finite_differences
 from preshape.perception.grasp_patches import cut_patches
 from preshape.perception.hand_projection import HandProjection
@@ -24,7 +24,7 @@ NORMAL_X, NORMAL_Y = 4, 5
 """Channels of the normals' components in the image plane."""
 
 
-class PatchesCNN(SuccessModel):
+class PatchesCNN(EnsembleModel):
     """A patch at the palm and one at each fingertip, each with a channel of its own.
 
     Patches are centred where palm and fingertips appear, with the direction of the hand upwards.
@@ -86,17 +86,9 @@ class PatchesCNN(SuccessModel):
         """The views themselves, from which patches are cut."""
         return view.to(self.image_mean)
 
-    def raw_head(self, features: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "b"]:
-        """Logits of b grasps, from b views or from one that they share."""
-        return logit_of_mean(self._each(features, theta))
+    def each(self, features: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "m b"]:
+        """See `EnsembleModel`."""
 
-    def member_logits(
-        self, view: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]
-    ) -> Float[Tensor, "m b"]:
-        """Logits of b grasps, each in its own view, by each of the m networks, before calibration."""
-        return self._each(self.features(view), theta)
-
-    def _each(self, features: ViewBatch, theta: Float[Tensor, "b d"]) -> Float[Tensor, "m b"]:
         def cut(theta: Tensor) -> tuple[Tensor, ...]:
             return self._patches(features, theta)
 
