@@ -112,10 +112,11 @@ def test_proposed_rectangles_lie_where_they_should(laboratory: Laboratory, scene
 
 @pytest.fixture(scope="module")
 def evaluator(laboratory: Laboratory, tmp_path_factory: pytest.TempPathFactory) -> Evaluator:
-    """The paper's experiment, with a network that has learned nothing."""
+    """The paper's experiment and one planner more, with a network that has learned nothing."""
     place = tmp_path_factory.mktemp("experiment")
     weights = place / "model.safetensors"
-    overrides = ["experiment=two_finger", f"paths.cache={place}", f"weights={weights}"]
+    more = "+planner@planners.multi_start=rectangle_multi_start"
+    overrides = ["experiment=two_finger", more, f"paths.cache={place}", f"weights={weights}"]
     with initialize_config_dir(str(project_root() / "conf"), version_base="1.3"):
         cfg = compose("evaluate", overrides)
     torch.manual_seed(0)
