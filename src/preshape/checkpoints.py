@@ -171,8 +171,9 @@ def _check_tensors(tensors: Mapping[str, Tensor], model: GraspNetwork, path: Pat
         different = sorted(
             name for name in expected.keys() | found.keys() if expected.get(name) != found.get(name)
         )
+        named = ", ".join(different[:3]) + (f" and {len(different) - 3} more" if len(different) > 3 else "")
         raise InputError(
-            f"The weights do not fit the configured `{model.name}`: {', '.join(different)} differ",
+            f"The weights do not fit the configured `{model.name}`: {named} differ",
             where=path,
             fix="configure the network as it was when it was trained, or train again",
         )
