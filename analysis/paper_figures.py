@@ -9,7 +9,7 @@ import pandas as pd
 
 ALL = "all"
 """Stands for all objects together."""
-COLUMNS = {"paper": "inference", "paper_constrained": "inference", "initial": "heuristic"}
+COLUMNS = {"paper": "inference", "paper_constrained": "inference"}
 """Planners that stand in the paper under another name."""
 
 

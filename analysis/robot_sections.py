@@ -15,7 +15,7 @@ from analysis.wording import plain_name, planner_name
 
 Run = Mapping[str, Any]
 HAND = {"heuristic": SERIES[1], "max_eval": SERIES[2], "inference": SERIES[0]}
-GRIPPER = {"initial": SERIES[1], "inference": SERIES[0]}
+GRIPPER = {"heuristic": SERIES[1], "inference": SERIES[0]}
 REAL_ROBOT = Missing(
     "Grasps by a real Allegro hand",
     [],
