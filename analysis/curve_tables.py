@@ -9,7 +9,13 @@ import pandas as pd
 from sklearn.metrics import roc_curve
 
 from preshape.errors import InputError
-from preshape.evaluation.measured_files import read_figures, read_predictions
+from preshape.evaluation.measured_files import (
+    CURVES_FILE,
+    METRICS_FILE,
+    PREDICTIONS_FILE,
+    read_figures,
+    read_predictions,
+)
 from preshape.files import atomic_path, read_json, write_json
 
 FIGURES = ("auc", "auc_low", "auc_high", "average_precision", "brier", "ece")
@@ -36,13 +42,13 @@ class CurveTables:
             InputError: if training or evaluation did not come to their end, or files cannot be read.
         """
         run, output = Path(self.run), Path(self.output)
-        metrics = read_json(run / "metrics.json")
+        metrics = read_json(run / METRICS_FILE)
         if "reliability" not in metrics:
             fix = "choose a network that does, such as model=palm_points"
             raise InputError("The network does not predict success", where=run, fix=fix)
         tables = {
-            "learning": pd.DataFrame(read_figures(run / "curves.json", "points")["points"]),
-            "roc": self._roc(run / "predictions.parquet"),
+            "learning": pd.DataFrame(read_figures(run / CURVES_FILE, "points")["points"]),
+            "roc": self._roc(run / PREDICTIONS_FILE),
             "reliability": _reliability(pd.DataFrame(metrics["reliability"])),
         }
         for name, table in tables.items():

@@ -8,9 +8,14 @@ import pandas as pd
 
 from preshape.errors import InputError
 from preshape.evaluation.fold_summary import FoldResult
-from preshape.evaluation.measured_files import read_figures, read_predictions
+from preshape.evaluation.measured_files import (
+    CURVES_FILE,
+    METRICS_FILE,
+    PREDICTIONS_FILE,
+    read_figures,
+    read_predictions,
+)
 
-PREDICTIONS_FILE, CURVES_FILE, METRICS_FILE = "predictions.parquet", "curves.json", "metrics.json"
 FILES = (PREDICTIONS_FILE, CURVES_FILE, METRICS_FILE)
 """In the order in which they are written: a fold without its figures has not come to its end."""
 ABOUT = ("experiment", "model", "trials", "trials_learned", "date", "split", "fold", "scalars", "identity")

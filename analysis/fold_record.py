@@ -6,17 +6,15 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from analysis.fold_files import (
-    CURVES_FILE,
-    FILES,
-    METRICS_FILE,
-    PREDICTIONS_FILE,
-    decisive_identity,
-    read_fold,
-)
+from analysis.fold_files import FILES, decisive_identity, read_fold
 from preshape.errors import InputError
 from preshape.evaluation.fold_summary import FoldResult
-from preshape.evaluation.measured_files import read_predictions
+from preshape.evaluation.measured_files import (
+    CURVES_FILE,
+    METRICS_FILE,
+    PREDICTIONS_FILE,
+    read_predictions,
+)
 from preshape.files import atomic_path, exclusive, read_json, write_json
 
 COLUMNS = ("lifted", "success_prob", "theta_predicted")

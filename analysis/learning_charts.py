@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from analysis.learning_runs import LearningRun
 from analysis.learning_tables import NUMBERS, SPLITS, curve_groups, headline
 from preshape.evaluation.calibration import reliability_diagram
-from preshape.evaluation.measured_files import read_figures
+from preshape.evaluation.measured_files import CURVES_FILE, read_figures
 
 CAPTIONS = {
     "reliability": "Predicted probability against the share that lifted, all folds together",
@@ -39,7 +39,7 @@ def training_curves(runs: Sequence[LearningRun]) -> Figure:
     figure = Figure(figsize=(3.6 * len(runs), 3.0), layout="constrained")
     for axes, run in zip(figure.subplots(1, len(runs), squeeze=False)[0], runs, strict=True):
         for fold in run.folds:
-            points = read_figures(fold.folder / "curves.json", "points")["points"]
+            points = read_figures(fold.folder / CURVES_FILE, "points")["points"]
             _draw_loss(axes, points, "train_loss", "#767676", "-")
             _draw_loss(axes, points, "val_loss", "#0072b2", "--")
         axes.set(xlabel="iteration", ylabel="cross entropy")

@@ -11,6 +11,7 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 
 from preshape.data.joined_tables import joined
 from preshape.data.tables import data_hash, read_data_set, write_data_set
+from preshape.evaluation.measured_files import METRICS_FILE
 from preshape.files import read_json, write_json
 from preshape.provenance import provenance
 from preshape.tracking import UntrackedRun
@@ -21,7 +22,7 @@ from sim.fingerprint import code_of
 
 log = logging.getLogger(__name__)
 
-METRICS_FILE, DONE_FILE = "metrics.json", "training.json"
+DONE_FILE = "training.json"
 
 
 @dataclass(frozen=True)

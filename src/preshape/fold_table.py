@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 from preshape.evaluation.fold_summary import FoldResult
+from preshape.evaluation.measured_files import METRICS_FILE
 from preshape.files import read_json
 
 FIGURES = {
@@ -23,7 +24,7 @@ SMALLER_IS_BETTER = "palm_m"
 class FoldTable:
     """A row of `runs.csv` for each fold, and one that is shown for each group and split, as `RunFigures`."""
 
-    result_file = "metrics.json"
+    result_file = METRICS_FILE
     names = 3
 
     def rows(self, run: Path) -> list[dict[str, Any]]:

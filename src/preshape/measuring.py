@@ -16,6 +16,7 @@ from preshape.evaluation.baselines import constant_baseline, random_baseline
 from preshape.evaluation.calibration import fit_temperature, oversampling_shift, reliability_diagram
 from preshape.evaluation.decisions import DecisionMetrics, best_f1_threshold, decision_metrics
 from preshape.evaluation.grasp_errors import GraspErrors, grasp_errors
+from preshape.evaluation.measured_files import PREDICTIONS_FILE
 from preshape.evaluation.metrics import ClassificationMetrics, classification_metrics
 from preshape.evaluation.reliability_picture import save_reliability
 from preshape.evaluation.roc import save_roc
@@ -23,7 +24,6 @@ from preshape.files import atomic_path
 from preshape.models.regression_cnn import RegressionCNN
 from preshape.models.success_model import GraspNetwork, SuccessModel
 
-PREDICTIONS_FILE = "predictions.parquet"
 PICTURES = ("roc.png", "reliability.png")
 
 

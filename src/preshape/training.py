@@ -18,9 +18,10 @@ from preshape.allocator import keep_freed_memory
 from preshape.checkpoints import load_weights, save_weights, sidecar_path
 from preshape.data.labelled_data import LabelledData
 from preshape.evaluation.grasp_errors import GraspErrors
+from preshape.evaluation.measured_files import CURVES_FILE, METRICS_FILE, PREDICTIONS_FILE
 from preshape.evaluation.metrics import ClassificationMetrics
 from preshape.files import write_json
-from preshape.measuring import PICTURES, PREDICTIONS_FILE, Measurement, calibrate, measure
+from preshape.measuring import PICTURES, Measurement, calibrate, measure
 from preshape.models.callbacks import KeepBest, Resumable, ShowProgress, TrackCurves
 from preshape.models.lightning_module import LearningSettings, learning_of
 from preshape.models.regression_cnn import RegressionCNN
@@ -31,8 +32,6 @@ from preshape.tracking import TrackedRun
 log = logging.getLogger(__name__)
 
 WEIGHTS_FILE = "model.safetensors"
-METRICS_FILE = "metrics.json"
-CURVES_FILE = "curves.json"
 EXIT_TERMINATED = 143
 """What a shell calls the end by SIGTERM."""
 REPORT_FILES = (PREDICTIONS_FILE, *PICTURES, CURVES_FILE, METRICS_FILE)

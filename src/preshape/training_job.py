@@ -8,6 +8,7 @@ from typing import Any
 from preshape.data.labelled_data import LabelledData
 from preshape.errors import InputError
 from preshape.evaluation.fold_summary import summarise
+from preshape.evaluation.measured_files import METRICS_FILE
 from preshape.files import file_hash, read_json
 from preshape.fold_table import FoldTable
 from preshape.logged_model import TrainedModel, seen_parts
@@ -23,7 +24,7 @@ from preshape.tracking import (
     Tracking,
     content_digest,
 )
-from preshape.training import METRICS_FILE, WEIGHTS_FILE, TrainerSettings, is_first_process, keep_files, train
+from preshape.training import WEIGHTS_FILE, TrainerSettings, is_first_process, keep_files, train
 
 DECISIVE = (
     *("preshape.data.labelled_data", "preshape.measuring"),

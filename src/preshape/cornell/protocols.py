@@ -14,13 +14,17 @@ from preshape.cornell.detection import Detection, Detector
 from preshape.cornell.detection_rates import detection_rates
 from preshape.data.folds import FOLDS, SplitScheme
 from preshape.errors import InputError
-from preshape.evaluation.measured_files import read_figures, read_predictions
+from preshape.evaluation.measured_files import (
+    METRICS_FILE,
+    PREDICTIONS_FILE,
+    read_figures,
+    read_predictions,
+)
 from preshape.evaluation.metrics import classification_metrics
 from preshape.files import write_json
-from preshape.measuring import PREDICTIONS_FILE
 from preshape.models.success_model import SuccessModel
 from preshape.progress import Progress
-from preshape.training import METRICS_FILE, WEIGHTS_FILE
+from preshape.training import WEIGHTS_FILE
 
 PROTOCOLS = {SplitScheme.SCENES: "image_wise", SplitScheme.UNSEEN: "object_wise"}
 """Names of the literature for the splits."""

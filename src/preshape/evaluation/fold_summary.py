@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from preshape.evaluation.average_roc import AverageRoc, Fold, average_roc, average_roc_figure
-from preshape.evaluation.measured_files import read_predictions
+from preshape.evaluation.measured_files import METRICS_FILE, PREDICTIONS_FILE, read_predictions
 from preshape.files import atomic_path, exclusive, read_json, write_json
 from preshape.provenance import provenance
 
@@ -50,7 +50,7 @@ class FoldResult:
         Raises:
             InputError: if the table of predictions cannot be read.
         """
-        table = read_predictions(self.folder / "predictions.parquet")
+        table = read_predictions(self.folder / PREDICTIONS_FILE)
         if "success_prob" not in table:
             return None
         return table["lifted"].to_numpy(dtype=bool), table["success_prob"].to_numpy(dtype=float)
@@ -96,7 +96,7 @@ def finished_folds(group: str | Path, identity: Mapping[str, str] | None = None)
         identity: digests of settings, data and perhaps code that the folds must have; None takes all.
     """
     results = [
-        FoldResult(path.parent, read_json(path)) for path in sorted(Path(group).glob("*/metrics.json"))
+        FoldResult(path.parent, read_json(path)) for path in sorted(Path(group).glob(f"*/{METRICS_FILE}"))
     ]
     wanted = [result for result in results if "fold" in result.content and result.has(identity or {})]
     return sorted(wanted, key=lambda result: (result.split, result.content["fold"]))

@@ -8,6 +8,9 @@ import pandas as pd
 from preshape.errors import InputError
 from preshape.files import read_json
 
+PREDICTIONS_FILE, CURVES_FILE, METRICS_FILE = "predictions.parquet", "curves.json", "metrics.json"
+"""What a finished training leaves, in the order in which it is written."""
+
 
 def read_figures(path: str | Path, *names: str) -> dict[str, Any]:
     """Read a JSON file that has to say something under each of these names.
