@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[2]
 PIPELINES = [ROOT / "dvc.yaml", *sorted((ROOT / "pipelines").glob("*/dvc.yaml"))]
 PLACES = {"preshape": ROOT / "src" / "preshape", "sim": ROOT / "sim", "analysis": ROOT / "analysis"}
 DECIDES_NOTHING = {  # how a run is started, told and kept, not what comes out
-    *("composition", "entry_point", "errors", "files", "fold_table", "interruption", "logged_model"),
+    *("base", "composition", "entry_point", "errors", "files", "fold_table", "interruption", "logged_model"),
     *("mlflow_tracking", "paths", "progress", "provenance", "run_table", "setting_values", "startup"),
     *("sweep_folders", "tracking", "training_job"),
 }
@@ -107,6 +107,26 @@ def test_stage_depends_on_no_code_that_it_does_not_run(stage: str) -> None:
         and not any(path.is_relative_to(ROOT / name) for path in needed)
     ]
     assert idle == []
+
+
+def inherited_files(path: Path) -> set[Path]:
+    """The files of its own folder that a configuration begins with, directly or not."""
+    entries = (yaml.safe_load(path.read_text(encoding="utf-8")) or {}).get("defaults", [])
+    names = {entry.partition("@")[0] for entry in entries if isinstance(entry, str) and entry != "_self_"}
+    files = {path.parent / f"{name}.yaml" for name in names}
+    return files.union(*map(inherited_files, files))
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_stage_depends_on_what_its_configuration_begins_with(stage: str) -> None:
+    given = [ROOT / name for name in STAGES[stage]["deps"] if name.startswith("conf/")]
+    files = [path for path in given if path.is_file()]
+    missing = {
+        str(path.relative_to(ROOT))
+        for path in set().union(*map(inherited_files, files))
+        if path.stem not in DECIDES_NOTHING and not any(path.is_relative_to(place) for place in given)
+    }
+    assert missing == set()
 
 
 @pytest.mark.parametrize("stage", STAGES)
