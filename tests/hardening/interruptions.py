@@ -119,6 +119,7 @@ class Start:
         self.pid = os.fork()
         if self.pid == 0:
             os.setsid()
+            signal.signal(signal.SIGINT, signal.default_int_handler)  # in a shell's background it is ignored
             os.environ.update(environment or {})
             time.tzset()
             become(lambda: run_script(own.case), self._messages)
