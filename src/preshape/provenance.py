@@ -16,6 +16,8 @@ NAMED_PACKAGES = (
     *("ompl", "pin", "coal", "toppra", "mlflow"),
 )
 """Packages whose version can change a number."""
+WRITTEN = ("results", "docs", "dvc.lock", "pipelines/*/dvc.lock")
+"""What commands themselves write about results, so that it may differ when the next one runs."""
 TYPED_COMMAND = "PRESHAPE_COMMAND"
 """Environment variable by which the processes of a sweep, which launchers start, know what was typed."""
 
@@ -44,19 +46,28 @@ def typed_command() -> str:
     return " ".join(("python", str(name), *sys.argv[1:]))
 
 
-def git_revision() -> str:
-    """Commit of the code, with `-dirty` if tracked files differ from it; `unknown` outside a git checkout."""
+def git_revision(root: Path | None = None) -> str:
+    """Commit of the code, with `-dirty` if tracked files differ from it on which a result can depend.
+
+    Args:
+        root: a checkout; None for the project's own.
+
+    Returns:
+        The first 12 digits; `unknown` outside a git checkout.
+    """
+    root = project_root() if root is None else root
+    others = (f":(top,exclude){path}" for path in WRITTEN)
     try:
-        answer = subprocess.run(
-            ["git", "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"],
-            cwd=project_root(),
-            capture_output=True,
-            text=True,
-            check=True,
-            timeout=20,
-        )
+        commit = _git(root, "rev-parse", "--short=12", "HEAD")
+        changed = _git(root, "diff", "--name-only", "HEAD", "--", ":(top)", *others)
     except (OSError, subprocess.SubprocessError):
         return "unknown"
+    return f"{commit}-dirty" if changed else commit
+
+
+def _git(root: Path, *arguments: str) -> str:
+    command = ["git", *arguments]
+    answer = subprocess.run(command, cwd=root, capture_output=True, text=True, check=True, timeout=20)
     return answer.stdout.strip()
 
 
