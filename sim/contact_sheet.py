@@ -9,8 +9,7 @@ from hydra.utils import instantiate
 from omegaconf import DictConfig
 
 from preshape.entry_point import entry_point
-from preshape.files import atomic_path
-from sim.object_portraits import contact_sheet
+from sim.object_portraits import contact_sheet, save_sheet
 
 log = logging.getLogger(__name__)
 
@@ -20,8 +19,7 @@ def main(cfg: DictConfig) -> None:
     """Write one picture of all objects."""
     objects = instantiate(cfg.objects.set)
     sheet = contact_sheet(objects, instantiate(cfg.portrait), instantiate(cfg.sheet))
-    with atomic_path(Path(cfg.output)) as temporary:
-        sheet.save(temporary, format="WEBP", quality=cfg.quality, method=6)
+    save_sheet(Path(cfg.output), sheet, cfg.quality)
     log.info("%d objects: %s", len(objects.names), cfg.output)
 
 

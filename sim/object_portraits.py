@@ -1,12 +1,15 @@
 """Portraits of single objects, and all objects of a set on one sheet."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import sapien
 from jaxtyping import UInt8
 from PIL import Image, ImageDraw
 
+from preshape.errors import InputError
+from preshape.files import atomic_path
 from preshape.geometry.camera import Camera
 from sim.camera import add_camera, segmentation, take_colour
 from sim.objects.actor import add_object
@@ -14,6 +17,7 @@ from sim.objects.object_model import ObjectModel, ObjectSet
 from sim.scene_systems import make_render_system
 
 SUPERSAMPLING = 2
+FORMATS = (".webp", ".png", ".jpg")
 
 
 @dataclass(frozen=True)
@@ -67,6 +71,24 @@ def contact_sheet(objects: ObjectSet, portraits: PortraitSettings, sheet: SheetS
             place, lines, (20, 20, 20), font_size=sheet.font_px, anchor="ma", align="center", spacing=1
         )
     return page
+
+
+def save_sheet(path: Path, sheet: Image.Image, quality: int) -> None:
+    """Write a sheet in the format that its name says.
+
+    Args:
+        path: where; ends with one of `FORMATS`.
+        sheet: the picture.
+        quality: of its compression, 0-100; PNG has no losses.
+
+    Raises:
+        InputError: if the name ends otherwise, or the place cannot be written to.
+    """
+    if path.suffix not in FORMATS:
+        fix = f"choose one of {', '.join(FORMATS)}"
+        raise InputError("The picture's name does not end with a known format", where=path, fix=fix)
+    with atomic_path(path) as temporary:
+        sheet.save(temporary, quality=quality, method=6)
 
 
 def portrait(model: ObjectModel, settings: PortraitSettings) -> UInt8[np.ndarray, "h w 3"]:

@@ -118,7 +118,7 @@ WRONG_VALUES = {
     "sim/crash_test.py": ("kills=0", "kills=x", "kills_per_table=0", "collect.trials=x"),
     "sim/contact_sheet.py": (
         *("quality=x", "quality=1000", "sheet.columns=0", "portrait.width_px=0", "portrait.width_px=x"),
-        "objects=mesh_folder",
+        *("objects=mesh_folder", "output=sheet.gif"),
     ),
     "sim/last_frames.py": (
         "trials=0",

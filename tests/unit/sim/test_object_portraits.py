@@ -1,10 +1,14 @@
 """A sheet shows every object of a set once, whole, on an even ground."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import trimesh
+from PIL import Image
 
-from sim.object_portraits import PortraitSettings, SheetSettings, contact_sheet, portrait
+from preshape.errors import InputError
+from sim.object_portraits import PortraitSettings, SheetSettings, contact_sheet, portrait, save_sheet
 from sim.objects.mesh_folder import MeshFolder
 
 GROUND = (1, 2, 3)
@@ -34,3 +38,18 @@ def test_the_sheet_has_a_place_for_each(balls: MeshFolder) -> None:
     assert page.shape == (120, 80, 3)
     places = [page[row : row + 50, column : column + 40] for row in (0, 60) for column in (0, 40)]
     assert [bool((place == GROUND).all(axis=2).any()) for place in places] == [True, True, True, False]
+
+
+@pytest.mark.parametrize(("suffix", "kind"), [(".webp", "WEBP"), (".png", "PNG"), (".jpg", "JPEG")])
+def test_a_sheet_is_what_its_name_says(suffix: str, kind: str, tmp_path: Path) -> None:
+    path = tmp_path / f"sheet{suffix}"
+    save_sheet(path, Image.new("RGB", (8, 8)), 70)
+    with Image.open(path) as found:
+        assert found.format == kind
+
+
+@pytest.mark.parametrize("name", ["sheet", "sheet.gif"])
+def test_other_kinds_of_pictures_are_refused(name: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="known format"):
+        save_sheet(tmp_path / name, Image.new("RGB", (8, 8)), 70)
+    assert not list(tmp_path.iterdir())
