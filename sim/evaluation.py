@@ -10,6 +10,7 @@ from pathlib import Path
 from preshape.data.tables import write_data_set
 from preshape.data.trial_table import SceneTable, TableOrigin, TrialTable
 from preshape.errors import InputError
+from preshape.files import copy_files
 from preshape.grasps.space import GraspSpace
 from sim.finished_scenes import FinishedScene, to_tables
 from sim.finishing import GuardedRunner, WorkerSettings, finish_scenes
@@ -111,6 +112,5 @@ def _assemble(output: Path, folders: list[Path], scenes: SceneTable, trials: Tri
     for name in PICTURES:
         shutil.rmtree(output / name, ignore_errors=True)
         for folder in folders:
-            if (folder / name).is_dir():
-                shutil.copytree(folder / name, output / name, dirs_exist_ok=True)
+            copy_files(folder / name, output / name)
     write_data_set(output, scenes, trials)

@@ -68,6 +68,18 @@ def exclusive(path: str | Path) -> Iterator[None]:
         yield
 
 
+def copy_files(source: Path, target: Path) -> None:
+    """Copy all files below a folder to the same places below another one, each atomically.
+
+    Raises:
+        InputError: if the place cannot be written to.
+    """
+    for path in sorted(source.rglob("*")):
+        if path.is_file():
+            with atomic_path(target / path.relative_to(source)) as temporary:
+                temporary.write_bytes(path.read_bytes())
+
+
 def write_json(path: str | Path, content: Mapping[str, Any]) -> None:
     """Write an object as indented JSON, atomically.
 

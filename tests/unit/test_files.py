@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from preshape.errors import InputError
-from preshape.files import atomic_path, read_json, write_json
+from preshape.files import atomic_path, copy_files, read_json, write_json
 
 
 def test_file_appears_only_at_the_end(tmp_path: Path) -> None:
@@ -46,6 +46,20 @@ def test_full_disk_is_the_users_to_mend(tmp_path: Path) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
     assert refusal.value.where == str(target)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_folders_are_copied_whole_or_the_place_is_named(tmp_path: Path) -> None:
+    for name in ("a.json", "inner/b.bin"):
+        path = tmp_path / "source" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(name.encode())
+    copy_files(tmp_path / "source", tmp_path / "target")
+    copy_files(tmp_path / "nothing", tmp_path / "target")
+    assert (tmp_path / "target/a.json").read_bytes() == b"a.json"
+    assert (tmp_path / "target/inner/b.bin").read_bytes() == b"inner/b.bin"
+    (tmp_path / "no_folder").touch()
+    with pytest.raises(InputError, match="no_folder"):
+        copy_files(tmp_path / "source", tmp_path / "no_folder")
 
 
 def test_folder_that_is_a_file_is_the_users_to_mend(tmp_path: Path) -> None:
