@@ -10,13 +10,22 @@ from preshape.paths import project_root
 
 FOLDERS = {"preshape": "src", "sim": "."}
 """Where the project's packages lie."""
+DECIDES_NOTHING = frozenset(
+    f"preshape.{name}"
+    for name in (
+        *("composition", "entry_point", "errors", "files", "fold_table", "interruption", "log_file"),
+        *("logged_model", "mlflow_tracking", "paths", "progress", "provenance", "run_table"),
+        *("setting_values", "startup", "sweep_folders", "tracking", "training_job"),
+    )
+)
+"""Modules by which a run is started, told and kept; what comes out does not depend on them."""
 
 
 @cache
 def source_digest(module: str) -> str:
     """Hash of a module's code and of all code of the project that it imports, directly or not.
 
-    Comments, docstrings and layout do not count.
+    Comments, docstrings and layout do not count, and neither do imported modules that decide nothing.
 
     Args:
         module: full name, such as `preshape.perception.object_view`.
@@ -28,7 +37,7 @@ def source_digest(module: str) -> str:
         path = _source(name)
         if name not in codes and path is not None:
             tree = ast.parse(path.read_bytes())
-            waiting += _imports(tree)
+            waiting += (found for found in _imports(tree) if found not in DECIDES_NOTHING)
             codes[name] = _code(tree)
     return hashlib.sha256(repr(sorted(codes.items())).encode()).hexdigest()
 

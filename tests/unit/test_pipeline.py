@@ -10,14 +10,12 @@ from typing import Any
 import pytest
 import yaml
 
+from preshape.source_digest import DECIDES_NOTHING
+
 ROOT = Path(__file__).parents[2]
 PIPELINES = [ROOT / "dvc.yaml", *sorted((ROOT / "pipelines").glob("*/dvc.yaml"))]
 PLACES = {"preshape": ROOT / "src" / "preshape", "sim": ROOT / "sim", "analysis": ROOT / "analysis"}
-DECIDES_NOTHING = {  # how a run is started, told and kept, not what comes out
-    *("base", "composition", "entry_point", "errors", "files", "fold_table", "interruption", "logged_model"),
-    *("mlflow_tracking", "paths", "progress", "provenance", "run_table", "setting_values", "startup"),
-    *("sweep_folders", "tracking", "training_job"),
-}
+PLUMBING = {PLACES["preshape"] / f"{name.partition('.')[2]}.py" for name in DECIDES_NOTHING}
 
 
 def expanded(stage: dict[str, Any]) -> dict[str, Any]:
@@ -83,7 +81,7 @@ def needed_files(stage: str) -> set[Path]:
     while new:
         needed |= new
         new = {file for path in new for file in imported_files(path)} - needed
-    return {path for path in needed if path.parent != PLACES["preshape"] or path.stem not in DECIDES_NOTHING}
+    return needed - PLUMBING
 
 
 @pytest.mark.parametrize("stage", STAGES)
@@ -124,7 +122,7 @@ def test_stage_depends_on_what_its_configuration_begins_with(stage: str) -> None
     missing = {
         str(path.relative_to(ROOT))
         for path in set().union(*map(inherited_files, files))
-        if path.stem not in DECIDES_NOTHING and not any(path.is_relative_to(place) for place in given)
+        if path.name != "base.yaml" and not any(path.is_relative_to(place) for place in given)
     }
     assert missing == set()
 

@@ -6,13 +6,17 @@ import pytest
 
 from preshape import source_digest as module
 
+SOURCES = Path(module.__file__).parent
 FILES = {
     "sim/pictures.py": (
         '"""Pictures."""\nfrom preshape.lens import focus\n\n\ndef draw():\n    return focus(1)\n'
     ),
-    "src/preshape/lens.py": "import numpy\nimport preshape.glass\n\n\ndef focus(x):\n    return x + 1\n",
+    "src/preshape/lens.py": (
+        "import numpy\nimport preshape.files\nimport preshape.glass\n\n\ndef focus(x):\n    return x + 1\n"
+    ),
     "src/preshape/glass.py": "INDEX = 1.5\n",
     "src/preshape/other.py": "X = 1\n",
+    "src/preshape/files.py": "MODE = 1\n",
 }
 
 
@@ -37,6 +41,7 @@ def digest() -> str:
         ("src/preshape/lens.py", "x + 1", "x + 2", False),
         ("src/preshape/glass.py", "1.5", "1.6", False),
         ("src/preshape/other.py", "1", "2", True),
+        ("src/preshape/files.py", "1", "2", True),
         ("sim/pictures.py", "Pictures.", "Fine pictures.", True),
         ("src/preshape/glass.py", "INDEX = 1.5", "INDEX = (1.5)  # of crown glass", True),
     ],
@@ -46,6 +51,11 @@ def test_the_digest_follows_the_code(root: Path, name: str, old: str, new: str, 
     (root / name).write_text(FILES[name].replace(old, new))
     assert (digest() == before) is same
     module.source_digest.cache_clear()
+
+
+def test_modules_that_decide_nothing_are_there() -> None:
+    names = (name.partition(".")[2] for name in module.DECIDES_NOTHING)
+    assert [name for name in names if not (SOURCES / f"{name}.py").is_file()] == []
 
 
 def test_the_real_renderer_and_perception_are_covered() -> None:
