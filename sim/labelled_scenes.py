@@ -1,12 +1,14 @@
 """Scenes with what came of their rectangles, from the tables of a data set."""
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 from pathlib import Path
 
 from preshape.cornell.layout import HEIGHT, WIDTH
 from preshape.cornell.rectangle import GraspRectangle
+from preshape.data.joined_tables import joined
 from preshape.data.scene import Scene
 from preshape.data.tables import read_data_set
 from preshape.data.trial_table import TrialTable
@@ -38,20 +40,25 @@ class LabelledScene:
         return replace(self, positives=positives, negatives=negatives)
 
 
-def labelled_scenes(table: str | Path, space: GraspSpace) -> list[LabelledScene]:
-    """The scenes of a data set in which at least one rectangle lifted.
+def labelled_scenes(tables: Sequence[str | Path], space: GraspSpace) -> list[LabelledScene]:
+    """The scenes of data sets in which at least one rectangle lifted.
+
+    Args:
+        tables: their folders; scenes get the numbers after those of the folder before.
+        space: grasp space of theta.
 
     Raises:
         InputError: if the tables cannot be read, or there are too many scenes for numbers of four digits, or
             another size of image.
     """
-    scenes, trials = read_data_set(table, space)
+    scenes, trials = reduce(joined, (read_data_set(table, space) for table in tables))
+    where = " ".join(map(str, tables))
     if max((scene.scene_id for scene in scenes.scenes), default=0) >= MAX_IMAGES:
-        raise InputError("The scenes have numbers of five digits", where=table, fix="collect fewer")
+        raise InputError("The scenes have numbers of five digits", where=where, fix="collect fewer")
     if any((scene.camera.width, scene.camera.height) != (WIDTH, HEIGHT) for scene in scenes.scenes):
         raise InputError(
             f"The images are not of {WIDTH} x {HEIGHT} pixels",
-            where=table,
+            where=where,
             fix="collect with camera=overhead",
         )
     labelled = [_labelled(scene, trials.executed) for scene in scenes.scenes]

@@ -1,6 +1,7 @@
 """Executed rectangles as a folder in the layout of the Cornell grasp data set, derived from their tables."""
 
 import shutil
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
@@ -19,6 +20,7 @@ from sim.cornell_image import image_paths, write_image
 from sim.job_list import do_jobs
 from sim.labelled_scenes import LabelledScene, labelled_scenes
 from sim.rectangle_grasps import RectangleGrasps
+from sim.stretched_objects import original_of
 from sim.table import TableSettings
 from sim.workers import BeginStep, Work, available_cores
 
@@ -43,6 +45,7 @@ class SimulatedCornell:
         meaning: how the gripper executed them.
         table_settings: the table on which it did.
         base_height_m: height of the robot's base over the floor; points are written in its frame.
+        added: folders of further tables, which are put behind the first.
         margin_px: points are written so far around the object; all of them would be 10 MB an image.
         workers: number of processes; None takes every core.
     """
@@ -53,6 +56,7 @@ class SimulatedCornell:
     meaning: RectangleGrasps
     table_settings: TableSettings
     base_height_m: float
+    added: Sequence[str | Path] = ()
     margin_px: int = 160
     workers: int | None = None
 
@@ -69,16 +73,20 @@ class SimulatedCornell:
         """
         with exclusive(root / LOCK):
             self._prepare(root)
-            labelled = labelled_scenes(self.table, self.space)
+            labelled = labelled_scenes(self._tables, self.space)
             scenes = {own.scene.scene_id: own for own in labelled}
             missing = [n for n in sorted(scenes) if not _complete(root / IMAGES, n)]
             if missing:
                 self._write(root, {number: scenes[number] for number in missing})
             _write_objects(root, labelled)
 
+    @property
+    def _tables(self) -> tuple[str | Path, ...]:
+        return (self.table, *self.added)
+
     def _prepare(self, root: Path) -> None:
         made_from = {
-            "tables": data_hash(self.table),
+            "tables": data_hash(*self._tables),
             "renderer": self.renderer.fingerprint,
             "meaning": asdict(self.meaning),
             "base_height_m": self.base_height_m,
@@ -151,11 +159,15 @@ def _complete(folder: Path, number: int) -> bool:
 
 
 def _write_objects(root: Path, scenes: list[LabelledScene]) -> None:
-    """The list of objects, with a line for each rectangle; an object's number is its place by name."""
-    names = sorted({labelled.scene.object_id for labelled in scenes})
+    """The list of objects, with a line for each rectangle.
+
+    An object's number is its place by name. Stretched copies of an object count as that object, so that no
+    part of the images can hold a copy of what another part tests.
+    """
+    names = sorted({original_of(labelled.scene.object_id) for labelled in scenes})
     lines = []
     for labelled in scenes:
-        name = labelled.scene.object_id
+        name = original_of(labelled.scene.object_id)
         line = f"{labelled.scene.scene_id:04d} {names.index(name)} {name} {BACKGROUND}\n"
         lines += [line] * (len(labelled.positives) + len(labelled.negatives))
     with atomic_path(root / OBJECT_LISTS[0]) as temporary:

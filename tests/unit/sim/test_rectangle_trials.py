@@ -27,6 +27,7 @@ from sim.laboratory import Laboratory
 from sim.planner_contest import EvaluationSettings, Evaluator, try_planners
 from sim.recorder import Recorder, RecorderSettings
 from sim.simulated_cornell import SimulatedCornell
+from sim.stretched_objects import StretchedObjects
 from sim.trial import PlannedGrasp
 
 BOX = "cheez_it_white_cheddar"
@@ -189,3 +190,33 @@ def test_executed_rectangles_become_a_data_set_in_cornells_layout(
     assert all(path.is_file() for path in written)
     with pytest.raises(InputError, match="something else"):
         maker(tmp_path / "table")
+
+
+def test_stretched_copies_of_added_tables_count_as_their_original(
+    laboratory: Laboratory, scene: Scene, trials: list[Trial], tmp_path: Path
+) -> None:
+    """No part of the images may hold a copy of what another part tests."""
+    copy, objects = f"{BOX}_stretched_1", StretchedObjects(laboratory.renderer.objects, copies=1, most=1.1)
+    stretched = [replace(trial, object_id=copy) for trial in trials]
+    for name, own_scene, own_trials in (
+        ("originals", scene, trials),
+        ("copies", replace(scene, object_id=copy), stretched),
+    ):
+        table = TrialTable.from_trials(own_trials, laboratory.space, laboratory.origin)
+        write_data_set(tmp_path / name, SceneTable(laboratory.origin, (own_scene,)), table)
+    runner = laboratory.runner
+    maker = SimulatedCornell(
+        tmp_path / "originals",
+        laboratory.space,
+        replace(laboratory.renderer, objects=objects),
+        runner.meaning,
+        runner.table,
+        0.8,
+        added=[tmp_path / "copies"],
+    )
+    maker(tmp_path / "cornell")
+    images = read_cornell(tmp_path / "cornell").images
+    assert [image.files.number for image in images] == [0, 1]
+    assert {(image.subject.object_id, image.subject.category) for image in images} == {(0, BOX)}
+    views = [load_cornell_view(image.files).observation.rgb for image in images]
+    assert not np.array_equal(*views)
