@@ -14,6 +14,7 @@ from sim.scene_systems import has_renderer
 
 IGNORE_EACH_OTHER = 1
 """Bit of SAPIEN's third collision group: shapes that share it do not collide."""
+RESTITUTION = 0.0
 
 
 class SimulatedRobot:
@@ -98,7 +99,8 @@ class SimulatedRobot:
 
 
 def _build(scene: sapien.Scene, robot: RobotDescription, rendered: bool) -> sapien.physx.PhysxArticulation:
-    builder = _parsed_builder(robot.urdf_path, rendered)
+    friction = sapien.physx.get_default_material().static_friction
+    builder = _parsed_builder(robot.urdf_path, rendered, friction)
     builder.set_scene(scene)
     builder.set_initial_pose(sapien.Pose(robot.T_world_base))
     articulation = builder.build(fix_root_link=True)
@@ -113,9 +115,16 @@ def _build(scene: sapien.Scene, robot: RobotDescription, rendered: bool) -> sapi
 
 
 @lru_cache(maxsize=4)
-def _parsed_builder(urdf_path: Path, rendered: bool) -> ArticulationBuilder:
-    """Reading the URDF costs more than building from it, so a process reads it once."""
+def _parsed_builder(urdf_path: Path, rendered: bool, friction: float) -> ArticulationBuilder:
+    """Reading the URDF costs more than building from it, so a process reads it once.
+
+    Args:
+        urdf_path: the robot.
+        rendered: whether it has to be seen.
+        friction: of its shapes, static and dynamic.
+    """
     loader = URDFLoader()
+    loader.set_material(friction, friction, RESTITUTION)
     loader.set_scene(sapien.Scene([sapien.physx.PhysxCpuSystem()]))
     (builder,), _, _ = loader.parse(str(urdf_path))
     if not rendered:

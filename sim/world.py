@@ -10,8 +10,7 @@ from sim.objects.actor import add_object
 from sim.objects.object_model import ObjectModel
 from sim.physics import PhysicsSettings, make_scene
 from sim.robots.description import RobotDescription
-from sim.scene_systems import has_renderer
-from sim.simulated_robot import SimulatedRobot, _parsed_builder
+from sim.simulated_robot import SimulatedRobot
 from sim.table import TableSettings, build_table
 
 TOUCHING_M = 1e-3
@@ -45,10 +44,6 @@ class World:
 
     def with_robot(self, robot: RobotDescription) -> Self:
         """The same world with a robot in it."""
-        if has_renderer(self.scene):
-            # A robot's shapes take their friction when its URDF is read, and a stage on which views are made
-            # may have read it under another one.
-            _parsed_builder.cache_clear()
         self.robot = SimulatedRobot(self.scene, robot)
         return self
 
