@@ -6,7 +6,7 @@ from typing import Any
 
 from analysis.cornell_protocols import protocol_table
 from analysis.wording import plain_name, table_row
-from preshape.provenance import command_line, git_revision
+from preshape.provenance import git_revision, lasting_command
 
 COUNTS = ("images", "objects", "categories", "backgrounds", "positives", "negatives")
 COLUMNS = ("images", "objects", "positives", "negatives")
@@ -22,7 +22,7 @@ def page(figures: Mapping[str, Any], name: str, pictures: Mapping[str, str]) -> 
     """
     parts = [
         ["# The Cornell grasp data set"],
-        [f"Made by `{command_line()}` at revision `{git_revision()}`."],
+        [f"Made by `{lasting_command()}` at revision `{git_revision()}`."],
         _counts(figures),
         *(_folds(name, sizes) for name, sizes in figures["folds"].items()),
         _metric(figures["metric"]),

@@ -21,7 +21,7 @@ from preshape.data.trial import GraspType
 from preshape.evaluation.measured_files import read_figures
 from preshape.files import write_json
 from preshape.grasps.space import GraspSpace
-from preshape.provenance import command_line, git_revision, provenance
+from preshape.provenance import git_revision, lasting_command, provenance
 
 PALM_AXES = {
     "centre_x_m": "object before the palm (m)",
@@ -147,7 +147,7 @@ class DatasetReport:
 
 
 def _made_by() -> list[str]:
-    return [f"Made by `{command_line()}` at revision `{git_revision()}`; intervals are 95 % Wilson."]
+    return [f"Made by `{lasting_command()}` at revision `{git_revision()}`; intervals are 95 % Wilson."]
 
 
 def _sensitivity(result: Mapping[str, Any]) -> list[str]:

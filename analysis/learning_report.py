@@ -13,7 +13,7 @@ from analysis.results_page import put_section
 from preshape.evaluation.average_roc import average_roc_figure
 from preshape.evaluation.fold_summary import split_roc
 from preshape.files import write_json
-from preshape.provenance import command_line, git_revision, provenance
+from preshape.provenance import git_revision, lasting_command, provenance
 
 Key = tuple[str, str]
 """Group and split of a run."""
@@ -78,8 +78,9 @@ class LearningReport:
         parts = [
             ["## Learning"],
             [
-                f"Made by `{command_line()}` at revision `{git_revision()}` from sweeps of `src/train.py`; "
-                "mean ± standard deviation over folds. What says *not run* has not been measured."
+                f"Made by `{lasting_command()}` at revision `{git_revision()}` from sweeps of "
+                "`src/train.py`; mean ± standard deviation over folds. "
+                "What says *not run* has not been measured."
             ],
             *self._classification(runs),
             *self._regression(runs),

@@ -11,7 +11,7 @@ from preshape.data.tables import read_data_set
 from preshape.data.trial import TrialOutcome
 from preshape.data.trial_table import TrialTable
 from preshape.grasps.space import GraspSpace
-from preshape.provenance import command_line, git_revision
+from preshape.provenance import git_revision, lasting_command
 
 SHOWN = (TrialOutcome.LIFTED, TrialOutcome.DROPPED)
 """Outcomes of which one trial is shown in pictures."""
@@ -48,7 +48,7 @@ class ObjectTable:
             f"## {self.title}",
             "",
             f"{len(trials)} grasps planned, {len(trials.executed)} executed; intervals are 95 % Wilson.",
-            f"Made by `{command_line()}` at revision `{git_revision()}`.",
+            f"Made by `{lasting_command()}` at revision `{git_revision()}`.",
             "",
             *table_lines(trials),
             *self._picture_lines(trials),

@@ -18,6 +18,8 @@ NAMED_PACKAGES = (
 """Packages whose version can change a number."""
 WRITTEN = ("results", "docs", "dvc.lock", "pipelines/*/dvc.lock")
 """What commands themselves write about results, so that it may differ when the next one runs."""
+DERIVED = ("paths.cache=", "paths.outputs=")
+"""Settings that say where derived files lie."""
 TYPED_COMMAND = "PRESHAPE_COMMAND"
 """Environment variable by which the processes of a sweep, which launchers start, know what was typed."""
 
@@ -25,7 +27,7 @@ TYPED_COMMAND = "PRESHAPE_COMMAND"
 def provenance(seed: int) -> dict[str, Any]:
     """What every result file starts with."""
     return {
-        "command": command_line(),
+        "command": lasting_command(),
         "git_revision": git_revision(),
         "versions": package_versions(),
         "seed": seed,
@@ -38,8 +40,13 @@ def command_line() -> str:
     return os.environ.get(TYPED_COMMAND) or typed_command()
 
 
+def lasting_command() -> str:
+    """The same without where caches and outputs lie, which decides nothing and differs between machines."""
+    return " ".join(word for word in command_line().split(" ") if not word.startswith(DERIVED))
+
+
 def typed_command() -> str:
-    """The same, of the process that it was typed for."""
+    """`command_line` of the process that it was typed for."""
     script = Path(sys.argv[0]).resolve()
     root = project_root()
     name = script.relative_to(root) if script.is_relative_to(root) else script.name

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from preshape.provenance import git_revision
+from preshape.provenance import TYPED_COMMAND, git_revision, provenance
 
 
 @pytest.fixture
@@ -46,3 +46,9 @@ def test_what_commands_write_themselves_is_no_change(checkout: Path, name: str) 
 
 def test_outside_a_checkout_the_revision_is_unknown(tmp_path: Path) -> None:
     assert git_revision(tmp_path) == "unknown"
+
+
+def test_a_result_names_no_place_of_derived_files(monkeypatch: pytest.MonkeyPatch) -> None:
+    typed = "python src/train.py paths.cache=/a/.cache split=seen paths.outputs=/a/out root=../data"
+    monkeypatch.setenv(TYPED_COMMAND, typed)
+    assert provenance(0)["command"] == "python src/train.py split=seen root=../data"
