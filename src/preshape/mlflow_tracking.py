@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from preshape.errors import InputError
 from preshape.files import exclusive
 from preshape.logged_model import TrainedModel, log_model, register_model
-from preshape.provenance import command_line
+from preshape.provenance import lasting_command
 from preshape.tracking import MULTIRUN_TAG, SweepMember, TrackedRun
 
 if TYPE_CHECKING:
@@ -177,7 +177,7 @@ class MlflowTracking:
 def _source(tags: Mapping[str, str]) -> dict[str, str]:
     """What MLflow's pages show as the source and the version of a run."""
     revision = tags.get("git_revision", "unknown").removesuffix("-dirty")
-    return {"mlflow.source.name": command_line(), "mlflow.source.git.commit": revision}
+    return {"mlflow.source.name": lasting_command(), "mlflow.source.git.commit": revision}
 
 
 def _sweep_run(
