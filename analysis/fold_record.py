@@ -17,7 +17,7 @@ from preshape.evaluation.measured_files import (
 )
 from preshape.files import atomic_path, exclusive, read_json, write_json
 
-COLUMNS = ("lifted", "success_prob", "theta_predicted")
+COLUMNS = ("trial_id", "scene_id", "lifted", "success_prob", "theta_predicted")
 """Columns of predictions that are read, and so are kept."""
 
 log = logging.getLogger(__name__)

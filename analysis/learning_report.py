@@ -6,6 +6,7 @@ from pathlib import Path
 
 from analysis import learning_charts as charts
 from analysis import learning_tables as tables
+from analysis.ablation_differences import AblationDifference, ablation_differences, difference_lines
 from analysis.chart_files import save_chart
 from analysis.fold_record import FoldRecord
 from analysis.learning_runs import LearningRun, measured_folds, read_runs
@@ -74,7 +75,12 @@ class LearningReport:
     def _write(self, found: Sequence[LearningRun]) -> str:
         runs = {(run.group, run.split): run for run in found}
         figures = [run.figures() for run in runs.values()]
-        write_json(self.output, {**provenance(self.seed), "runs": figures})
+        differences = {
+            heading: ablation_differences(runs, groups, self.seed)
+            for heading, groups in self.ablations.items()
+        }
+        compared = [own.to_dict() for found in differences.values() for own in found]
+        write_json(self.output, {**provenance(self.seed), "runs": figures, "differences": compared})
         parts = [
             ["## Learning"],
             [
@@ -84,7 +90,7 @@ class LearningReport:
             ],
             *self._classification(runs),
             *self._regression(runs),
-            *self._ablations(runs),
+            *self._ablations(runs, differences),
             ["### Temperature scaling"],
             tables.calibration_lines(runs, self.calibrated),
             *self._learning_curves(runs),
@@ -126,12 +132,15 @@ class LearningReport:
     def _regression(self, runs: Mapping[Key, LearningRun]) -> list[list[str]]:
         return [["### Regression"], tables.regression_lines(runs, self.paper["regression"])]
 
-    def _ablations(self, runs: Mapping[Key, LearningRun]) -> list[list[str]]:
-        return [
-            part
-            for heading, groups in self.ablations.items()
-            for part in ([f"### {heading}"], tables.comparison_lines(runs, groups))
-        ]
+    def _ablations(
+        self, runs: Mapping[Key, LearningRun], differences: Mapping[str, Sequence[AblationDifference]]
+    ) -> list[list[str]]:
+        parts = []
+        for heading, groups in self.ablations.items():
+            parts += [[f"### {heading}"], tables.comparison_lines(runs, groups)]
+            if differences[heading]:
+                parts.append(difference_lines(differences[heading]))
+        return parts
 
     def _learning_curves(self, runs: Mapping[Key, LearningRun]) -> list[list[str]]:
         parts = [["### Number of trials"], tables.learning_curve_lines(runs, self.learning_curves)]

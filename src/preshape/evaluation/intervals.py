@@ -56,12 +56,36 @@ def bootstrap_auc(
     """
     if labels.all() or not labels.any():
         return float("nan"), float("nan")
-    # AUC is the share of (positive, negative) pairs in the right order; resampling only weights the pairs.
     weights = resampled(len(labels), rng, groups=groups, replicates=replicates)
+    return percentile_interval(resampled_aucs(labels, scores, weights), confidence)
+
+
+def resampled_aucs(
+    labels: Bool[np.ndarray, "n"], scores: Float[np.ndarray, "n"], weights: Float32[np.ndarray, "r n"]
+) -> Float[np.ndarray, "r"]:
+    """Area under the ROC curve in each resampled data set; NaN where it misses one of the classes.
+
+    Args:
+        labels, scores: see `bootstrap_auc`.
+        weights: how often each trial occurs in each data set.
+    """
+    # AUC is the share of (positive, negative) pairs in the right order; resampling only weights the pairs.
     positive, negative = weights[:, labels], weights[:, ~labels]
     above = np.sign(scores[labels][:, None] - scores[~labels][None, :]).astype(np.float32) / 2 + 0.5
     ordered = ((positive @ above) * negative).sum(axis=1, dtype=np.float64)
     pairs = positive.sum(axis=1, dtype=np.float64) * negative.sum(axis=1, dtype=np.float64)
+    with np.errstate(invalid="ignore"):
+        areas: Float[np.ndarray, "r"] = ordered / pairs
+    return areas
+
+
+def percentile_interval(
+    values: Float[np.ndarray, "r"], confidence: float = CONFIDENCE
+) -> tuple[float, float]:
+    """The middle of what the resampled data sets gave (low, high); (NaN, NaN) if none gave a number."""
+    known = values[np.isfinite(values)]
+    if not len(known):
+        return float("nan"), float("nan")
     tail = (1 - confidence) / 2
-    low, high = np.quantile(ordered[pairs > 0] / pairs[pairs > 0], [tail, 1 - tail])
+    low, high = np.quantile(known, [tail, 1 - tail])
     return float(low), float(high)

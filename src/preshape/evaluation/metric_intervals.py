@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Float32, Int
 
 from preshape.evaluation.calibration import bin_numbers
-from preshape.evaluation.intervals import CONFIDENCE, resampled
+from preshape.evaluation.intervals import percentile_interval, resampled
 
 REPLICATES = 1000
 
@@ -41,7 +41,7 @@ def metric_intervals(
         "brier": weights @ ((success_prob - labels) ** 2).astype(np.float32) / total,
         "ece": _calibration_errors(labels, success_prob, weights),
     }
-    return {name: _interval(values) for name, values in replicates.items()}
+    return {name: percentile_interval(values) for name, values in replicates.items()}
 
 
 def _average_precisions(
@@ -69,12 +69,3 @@ def _calibration_errors(
     distance = np.abs(weights @ gaps.astype(np.float32)).sum(axis=1)
     errors: Float[np.ndarray, "r"] = distance / weights.sum(axis=1)
     return errors
-
-
-def _interval(values: Float[np.ndarray, "r"]) -> tuple[float, float]:
-    known = values[np.isfinite(values)]
-    if not len(known):
-        return float("nan"), float("nan")
-    tail = (1 - CONFIDENCE) / 2
-    low, high = np.quantile(known, [tail, 1 - tail])
-    return float(low), float(high)

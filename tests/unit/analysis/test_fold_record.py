@@ -55,8 +55,12 @@ def test_a_recorded_fold_is_what_was_measured(tmp_path: Path, record: FoldRecord
 def test_only_columns_that_are_read_are_kept(tmp_path: Path, record: FoldRecord) -> None:
     write_grasp_fold(tmp_path / "seen_fold1")
     record.take("paper", [measured(tmp_path / "seen_fold0"), read_fold(tmp_path / "seen_fold1")])
+    known = ["trial_id", "scene_id"]
     tables = [pd.read_parquet(fold.folder / "predictions.parquet") for fold in record.folds("paper")]
-    assert [list(table) for table in tables] == [["lifted", "success_prob"], ["theta_predicted"]]
+    assert [list(table) for table in tables] == [
+        [*known, "lifted", "success_prob"],
+        [*known, "theta_predicted"],
+    ]
     assert record.folds("paper")[1].predictions() is None
 
 

@@ -3,8 +3,10 @@
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 from synthetic_folds import IDENTITY, write_fold, write_grasp_fold, write_group
 
@@ -103,6 +105,44 @@ def test_the_record_alone_makes_the_same_report(tmp_path: Path, left: str) -> No
     kept = {path: path.stat().st_ino for path in (tmp_path / "folds").rglob("*")}
     assert written(tmp_path) == measured
     assert {path: path.stat().st_ino for path in (tmp_path / "folds").rglob("*")} == kept
+
+
+def differences(folder: Path) -> list[dict[str, Any]]:
+    report(folder).write()
+    found: list[dict[str, Any]] = read_json(folder / "cross_validation.json")["differences"]
+    return found
+
+
+def test_networks_of_an_ablation_are_compared_on_the_trials_that_both_were_tested_with(
+    tmp_path: Path,
+) -> None:
+    train = tmp_path / "train"
+    write_group(train / "paper", *FOLDS[:3])
+    areas = [write_fold(train / "moving" / name, trained=7).auc for name in FOLDS[1:]]
+    summarise(train / "moving", IDENTITY)
+    seen, unseen = differences(tmp_path)
+    assert (seen["group"], seen["less"], seen["split"]) == ("moving", "paper", "seen")
+    assert (seen["folds"], seen["n"], unseen["folds"]) == ([1], 60, [0])
+    for found, name, area in ((seen, FOLDS[1], areas[0]), (unseen, FOLDS[2], areas[1])):
+        expected = area - write_fold(tmp_path / "again" / name).auc
+        assert found["auc"]["value"] == pytest.approx(expected, abs=1e-6)
+        assert found["auc"]["low"] <= found["auc"]["value"] <= found["auc"]["high"]
+    shown = [
+        line for line in (tmp_path / "results.md").read_text().splitlines() if line.startswith("| moving | ")
+    ]
+    assert len(shown) == 1 + 2
+    assert f"{seen['auc']['value']:+.3f} [" in shown[1]
+
+
+def test_folds_with_other_trials_are_not_compared(tmp_path: Path) -> None:
+    train = tmp_path / "train"
+    for group in ("paper", "moving"):
+        write_group(train / group, "seen_fold0", "seen_fold1")
+    for name, column in (("seen_fold0", "trial_id"), ("seen_fold1", "scene_id")):
+        path = train / "moving" / name / "predictions.parquet"
+        table = pd.read_parquet(path)
+        table.assign(**{column: table[column] + 1}).to_parquet(path)
+    assert differences(tmp_path) == []
 
 
 def test_sweeps_may_be_left_out(tmp_path: Path) -> None:
