@@ -1,13 +1,13 @@
 """Make pages and result files: `python analysis/report.py report=demo`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
-from preshape.entry_point import entry_point
+from preshape.command_line.entry_point import entry_point
 
 log = logging.getLogger(__name__)
 

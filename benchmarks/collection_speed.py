@@ -12,7 +12,7 @@ from comparison import Comparison
 from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 
-import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
+import preshape.command_line.entry_point  # noqa: F401  (registers the configuration's resolvers)
 from preshape.data.trial import Trial
 from preshape.paths import project_root
 from sim.laboratory import Laboratory

@@ -15,7 +15,7 @@ from comparison import Comparison
 from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 
-import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
+import preshape.command_line.entry_point  # noqa: F401  (registers the configuration's resolvers)
 from preshape.data.scene import Scene
 from preshape.data.tables import SCENES_FILE, read_scenes
 from preshape.data.view_cache import ViewCache

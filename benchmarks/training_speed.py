@@ -12,8 +12,8 @@ from noise_views import noise_views
 from torch import Tensor
 from torch.nn.functional import binary_cross_entropy_with_logits
 
-import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
-from preshape.allocator import keep_freed_memory
+import preshape.command_line.entry_point  # noqa: F401  (registers the configuration's resolvers)
+from preshape.command_line.allocator import keep_freed_memory
 from preshape.models.config_cnn import ConfigCNN
 from preshape.models.lightning_module import learning_of
 from preshape.paths import project_root

@@ -1,6 +1,6 @@
 """Collect labelled grasps: `python sim/collect.py objects=grocery collect.trials=330`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 from functools import partial
 from pathlib import Path
@@ -9,7 +9,7 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
 
-from preshape.entry_point import entry_point
+from preshape.command_line.entry_point import entry_point
 from sim.collected_tables import write_tables
 from sim.collection import CollectionSettings, collect
 from sim.fingerprint import fingerprint

@@ -1,6 +1,6 @@
 """Portray all objects of a set on one sheet: `python sim/contact_sheet.py objects=grocery`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 from pathlib import Path
@@ -8,7 +8,7 @@ from pathlib import Path
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
-from preshape.entry_point import entry_point
+from preshape.command_line.entry_point import entry_point
 from sim.object_portraits import contact_sheet, save_sheet
 
 log = logging.getLogger(__name__)

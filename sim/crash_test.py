@@ -1,6 +1,6 @@
 """Kill collections at random moments and compare what they end with: `python sim/crash_test.py kills=25`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 from dataclasses import asdict
@@ -10,7 +10,7 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
-from preshape.entry_point import entry_point
+from preshape.command_line.entry_point import entry_point
 from preshape.files import write_json
 from preshape.provenance import provenance
 from sim.crashes import CrashSettings, crash_collections

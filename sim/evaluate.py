@@ -1,6 +1,6 @@
 """Compare planners on new scenes: `python sim/evaluate.py weights=FILE.safetensors`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 from pathlib import Path
@@ -9,7 +9,7 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.types import RunMode
 from omegaconf import DictConfig
 
-from preshape.entry_point import entry_point
+from preshape.command_line.entry_point import entry_point
 from sim.tracked_evaluation import tracked_evaluation
 
 log = logging.getLogger(__name__)

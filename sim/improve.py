@@ -1,6 +1,6 @@
 """Learn from the planner's own grasps, round by round: `python sim/improve.py rounds=2`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 from pathlib import Path
@@ -8,7 +8,7 @@ from pathlib import Path
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig
 
-from preshape.entry_point import entry_point
+from preshape.command_line.entry_point import entry_point
 from sim.improvement import improve
 
 log = logging.getLogger(__name__)

@@ -14,7 +14,7 @@ from preshape.data.tables import data_hash, read_data_set, write_data_set
 from preshape.evaluation.measured_files import METRICS_FILE
 from preshape.files import read_json, write_json
 from preshape.provenance import provenance
-from preshape.tracking import UntrackedRun
+from preshape.tracking.tracked_run import UntrackedRun
 from preshape.training import WEIGHTS_FILE, train
 from sim.configured_evaluation import run_evaluation
 from sim.evaluation_summary import PlannerSummary

@@ -1,6 +1,6 @@
 """Show how random trials ended beside their labels: `python sim/last_frames.py trials=100`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 from functools import partial
@@ -8,8 +8,8 @@ from functools import partial
 from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
 
+from preshape.command_line.entry_point import entry_point
 from preshape.data.tables import data_hash, read_data_set
-from preshape.entry_point import entry_point
 from preshape.files import write_json
 from preshape.provenance import provenance
 from sim.frame_sheets import photograph, write_sheets

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from preshape.checkpoints import load_weights
 from preshape.data.scene import Scene
 from preshape.data.trial import Face, Trial
 from preshape.errors import InputError
+from preshape.models.checkpoints import load_weights
 from preshape.models.success_model import SuccessModel
 from preshape.perception.view_files import save_view
 from preshape.planning.grasp_plan import GraspPlan

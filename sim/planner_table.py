@@ -15,7 +15,7 @@ SHOWN = ("scenes", "answered", "executed", "lifted", "rate", "low", "high", "pre
 
 
 class PlannerTable:
-    """A row for each planner of each run, as `preshape.run_table.RunFigures`."""
+    """A row for each planner of each run, as `preshape.sweeps.run_table.RunFigures`."""
 
     result_file = SUMMARY_FILE
     names = 2

@@ -1,6 +1,6 @@
 """Repeat recorded trials and film them: `python sim/replay.py trials=[12,40]`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 from pathlib import Path
@@ -8,8 +8,8 @@ from pathlib import Path
 from hydra.utils import instantiate
 from omegaconf import DictConfig, ListConfig
 
+from preshape.command_line.entry_point import entry_point
 from preshape.data.tables import read_data_set
-from preshape.entry_point import entry_point
 from preshape.errors import InputError
 from sim.recorder import Recorder
 from sim.repetition import find_trials, repeat

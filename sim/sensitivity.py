@@ -1,6 +1,6 @@
 """Repeat trials under other settings and count the labels that flip: `python sim/sensitivity.py`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 from dataclasses import asdict
@@ -10,8 +10,8 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
 
+from preshape.command_line.entry_point import entry_point
 from preshape.data.tables import data_hash, read_data_set
-from preshape.entry_point import entry_point
 from preshape.files import write_json
 from preshape.provenance import provenance
 from sim.label_flips import sample_trials

@@ -7,8 +7,8 @@ from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
 
 from preshape.provenance import command_line, device_name, git_revision
-from preshape.run_table import join_table, sweep_folder
-from preshape.tracking import MULTIRUN_TAG, SweepMember, Tracking, content_digest
+from preshape.sweeps.run_table import join_table, sweep_folder
+from preshape.tracking.tracked_run import MULTIRUN_TAG, SweepMember, Tracking, content_digest
 from sim.configured_evaluation import run_evaluation
 from sim.evaluation import SUMMARY_FILE
 from sim.evaluation_summary import PlannerSummary

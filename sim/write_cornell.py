@@ -1,6 +1,6 @@
 """Write executed rectangles in the layout of the Cornell data: `python sim/write_cornell.py output=DIR`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 from pathlib import Path
@@ -8,7 +8,7 @@ from pathlib import Path
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
-from preshape.entry_point import entry_point
+from preshape.command_line.entry_point import entry_point
 
 log = logging.getLogger(__name__)
 

@@ -1,6 +1,6 @@
 """Detect grasps in held-out images of the Cornell data: `python src/detect.py dataset.root=DIR`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 from pathlib import Path
@@ -8,10 +8,10 @@ from pathlib import Path
 from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
 
+from preshape.command_line.entry_point import entry_point
 from preshape.cornell.data_module import CornellDataModule
 from preshape.cornell.protocols import evaluate_folds, result_rows
 from preshape.cornell.result_file import merge_rows, summary
-from preshape.entry_point import entry_point
 from preshape.models.success_model import SuccessModel
 from preshape.provenance import git_revision
 

@@ -1,6 +1,6 @@
 """Check what commonly goes wrong on a machine, and name the fix: `python src/doctor.py`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 import sys

@@ -1,15 +1,15 @@
 """Export a trained network as ONNX: `python src/export.py model=config_cnn weights=FILE.safetensors`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
-from preshape.checkpoints import load_weights
-from preshape.entry_point import entry_point
-from preshape.onnx_export import export_onnx
+from preshape.command_line.entry_point import entry_point
+from preshape.models.checkpoints import load_weights
+from preshape.models.onnx_export import export_onnx
 
 log = logging.getLogger(__name__)
 

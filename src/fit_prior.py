@@ -1,6 +1,6 @@
 """Fit a prior over theta to the grasps that lifted: `python src/fit_prior.py`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 
@@ -8,7 +8,7 @@ import numpy as np
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
-from preshape.entry_point import entry_point
+from preshape.command_line.entry_point import entry_point
 
 log = logging.getLogger(__name__)
 

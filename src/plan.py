@@ -1,6 +1,6 @@
 """Plan grasps for a saved RGB-D view: `python src/plan.py view=DIR weights=FILE.safetensors`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 from pathlib import Path
@@ -9,10 +9,10 @@ import numpy as np
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
+from preshape.command_line.entry_point import entry_point
 from preshape.configured_planner import planner_of
 from preshape.drawing.picture_files import save_picture
 from preshape.drawing.plan_picture import plan_picture
-from preshape.entry_point import entry_point
 from preshape.perception.view_choice import load_chosen_view
 from preshape.planning.plan_files import write_plan
 

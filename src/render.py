@@ -1,6 +1,6 @@
 """Make the views of a data set before trainings need them: `python src/render.py`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 import time
@@ -8,7 +8,7 @@ import time
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
-from preshape.entry_point import entry_point
+from preshape.command_line.entry_point import entry_point
 from preshape.files import write_json
 from preshape.provenance import provenance
 

@@ -1,6 +1,6 @@
 """Train a network that predicts grasp success: `python src/train.py`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 import logging
 from pathlib import Path
@@ -11,7 +11,7 @@ from hydra.types import RunMode
 from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
 
-from preshape.entry_point import entry_point
+from preshape.command_line.entry_point import entry_point
 from preshape.training_job import TrainingJob
 
 log = logging.getLogger(__name__)

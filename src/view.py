@@ -1,6 +1,6 @@
 """Look at scenes, grasps, climbs and trials in the browser: `python src/view.py`."""
 
-import preshape.startup
+import preshape.command_line.startup
 
 from functools import partial
 
@@ -8,9 +8,9 @@ import numpy as np
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
+from preshape.command_line.entry_point import entry_point
 from preshape.configured_planner import planner_of
 from preshape.data.tables import read_data_set
-from preshape.entry_point import entry_point
 from preshape.perception.view_choice import load_chosen_view
 from preshape.viewer.request import Request
 from preshape.viewer.saved_view_session import SavedViewSession

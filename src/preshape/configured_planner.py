@@ -7,9 +7,9 @@ from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
-import preshape.entry_point  # noqa: F401 - registers what the configuration refers to
-from preshape.checkpoints import load_weights
-from preshape.composition import check_composition
+import preshape.command_line.entry_point  # noqa: F401 - registers what the configuration refers to
+from preshape.command_line.composition import check_composition
+from preshape.models.checkpoints import load_weights
 from preshape.paths import project_root
 from preshape.perception.view_choice import load_chosen_view
 from preshape.planning.grasp_plan import GraspPlan

@@ -10,15 +10,11 @@ from preshape.paths import project_root
 
 FOLDERS = {"preshape": "src", "sim": "."}
 """Where the project's packages lie."""
-DECIDES_NOTHING = frozenset(
-    f"preshape.{name}"
-    for name in (
-        *("composition", "entry_point", "errors", "files", "fold_table", "interruption", "log_file"),
-        *("logged_model", "mlflow_tracking", "paths", "progress", "provenance", "run_table"),
-        *("setting_values", "startup", "sweep_folders", "tracking", "training_job"),
-    )
+DECIDES_NOTHING = (
+    *("preshape.command_line", "preshape.sweeps", "preshape.tracking", "preshape.training_job"),
+    *("preshape.errors", "preshape.files", "preshape.paths", "preshape.progress", "preshape.provenance"),
 )
-"""Modules by which a run is started, told and kept; what comes out does not depend on them."""
+"""Packages and modules by which a run is started, told and kept; what comes out does not depend on them."""
 
 
 @cache
@@ -37,9 +33,14 @@ def source_digest(module: str) -> str:
         path = _source(name)
         if name not in codes and path is not None:
             tree = ast.parse(path.read_bytes())
-            waiting += (found for found in _imports(tree) if found not in DECIDES_NOTHING)
+            waiting += (found for found in _imports(tree) if not decides_nothing(found))
             codes[name] = _code(tree)
     return hashlib.sha256(repr(sorted(codes.items())).encode()).hexdigest()
+
+
+def decides_nothing(module: str) -> bool:
+    """Whether nothing that comes out of a run depends on a module: see `DECIDES_NOTHING`."""
+    return any(f"{module}.".startswith(f"{own}.") for own in DECIDES_NOTHING)
 
 
 def _source(module: str) -> Path | None:

@@ -14,8 +14,7 @@ import lightning
 from lightning.pytorch.utilities.exceptions import SIGTERMException
 from safetensors.torch import save
 
-from preshape.allocator import keep_freed_memory
-from preshape.checkpoints import load_weights, save_weights, sidecar_path
+from preshape.command_line.allocator import keep_freed_memory
 from preshape.data.labelled_data import LabelledData
 from preshape.evaluation.grasp_errors import GraspErrors
 from preshape.evaluation.measured_files import CURVES_FILE, METRICS_FILE, PREDICTIONS_FILE
@@ -23,11 +22,12 @@ from preshape.evaluation.metrics import ClassificationMetrics
 from preshape.files import write_json
 from preshape.measuring import PICTURES, Measurement, calibrate, measure
 from preshape.models.callbacks import KeepBest, Resumable, ShowProgress, TrackCurves
+from preshape.models.checkpoints import load_weights, save_weights, sidecar_path
 from preshape.models.lightning_module import LearningSettings, learning_of
 from preshape.models.regression_cnn import RegressionCNN
 from preshape.models.success_model import GraspNetwork, SuccessModel
 from preshape.provenance import git_revision, provenance
-from preshape.tracking import TrackedRun
+from preshape.tracking.tracked_run import TrackedRun
 
 log = logging.getLogger(__name__)
 

@@ -10,13 +10,13 @@ from preshape.errors import InputError
 from preshape.evaluation.fold_summary import summarise
 from preshape.evaluation.measured_files import METRICS_FILE
 from preshape.files import file_hash, read_json
-from preshape.fold_table import FoldTable
-from preshape.logged_model import TrainedModel, seen_parts
 from preshape.models.success_model import GraspNetwork, SuccessModel
 from preshape.provenance import command_line, device_name, git_revision
-from preshape.run_table import join_table, sweep_folder
 from preshape.source_digest import source_digest
-from preshape.tracking import (
+from preshape.sweeps.fold_table import FoldTable
+from preshape.sweeps.run_table import join_table, sweep_folder
+from preshape.tracking.logged_model import TrainedModel, seen_parts
+from preshape.tracking.tracked_run import (
     MULTIRUN_TAG,
     NoTracking,
     SweepMember,

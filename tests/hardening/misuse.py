@@ -32,7 +32,12 @@ LIBRARIES = (
     *("matplotlib.pyplot", "trimesh", "coal", "ompl", "toppra", "onnx", "torchmetrics"),
 )
 MODULES = (
-    *("preshape.entry_point", "preshape.training_job", "preshape.configured_planner", "preshape.onnx_export"),
+    *(
+        "preshape.command_line.entry_point",
+        "preshape.training_job",
+        "preshape.configured_planner",
+        "preshape.models.onnx_export",
+    ),
     *("preshape.planning.prior_fitting", "preshape.cornell.protocols", "sim.collection", "sim.label_flips"),
     *("sim.collected_tables", "sim.configured_evaluation", "sim.improvement", "sim.repetition"),
     *("sim.frame_sheets", "sim.object_portraits", "sim.simulated_cornell", "analysis.dataset_report"),

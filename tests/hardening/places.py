@@ -18,9 +18,9 @@ from synthetic_evaluation import write_evaluation
 from synthetic_scenes import BoxRenderer, allegro_space, make_scene, write_data_set
 from trained_folds import write_record, write_rectangle_folds, write_sweep
 
-from preshape.checkpoints import save_weights
 from preshape.data.tables import SCENES_FILE, TRIALS_FILE
 from preshape.files import read_json, write_json
+from preshape.models.checkpoints import save_weights
 from preshape.models.config_cnn import ConfigCNN
 from preshape.models.palm_points import PalmPoints
 from preshape.paths import project_root

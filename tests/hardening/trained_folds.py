@@ -7,11 +7,11 @@ from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 from synthetic_folds import write_fold, write_group
 
-import preshape.entry_point  # noqa: F401 - registers the resolvers
+import preshape.command_line.entry_point  # noqa: F401 - registers the resolvers
 from analysis.fold_record import FoldRecord
 from analysis.learning_runs import measured_folds
-from preshape.checkpoints import save_weights
 from preshape.data.folds import FOLDS
+from preshape.models.checkpoints import save_weights
 from preshape.paths import project_root
 from preshape.training import WEIGHTS_FILE
 

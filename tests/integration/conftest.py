@@ -4,7 +4,7 @@ import pytest
 from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 
-import preshape.entry_point  # noqa: F401 - registers what the configuration refers to
+import preshape.command_line.entry_point  # noqa: F401 - registers what the configuration refers to
 from preshape.grasps.space import GraspSpace
 from preshape.paths import project_root
 

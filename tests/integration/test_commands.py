@@ -35,7 +35,7 @@ def test_an_interrupt_while_libraries_are_imported_ends_in_one_line(command: str
     kept = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
     with subprocess.Popen(told, cwd=tmp_path, text=True, **kept) as starting:
         assert starting.stderr is not None
-        begun = any("preshape.startup" in line for line in starting.stderr)
+        begun = any("preshape.command_line.startup" in line for line in starting.stderr)
         time.sleep(0.2)
         starting.send_signal(signal.SIGINT)
         said = [line for line in starting.stderr if not line.startswith("import time:")]

@@ -11,9 +11,9 @@ import torch
 from mlflow import MlflowClient
 from ready_python import ReadyPython
 
-from preshape.checkpoints import save_weights
 from preshape.data.tables import read_data_set
 from preshape.grasps.space import GraspSpace
+from preshape.models.checkpoints import save_weights
 from preshape.models.palm_points import PalmPoints
 from preshape.paths import project_root
 

@@ -14,10 +14,10 @@ from PIL import Image
 from ready_python import ReadyPython
 from synthetic_scenes import BoxRenderer, make_scene
 
-from preshape.checkpoints import save_weights
 from preshape.configured_planner import plan_view
 from preshape.geometry.camera import Camera
 from preshape.geometry.pose import make_pose
+from preshape.models.checkpoints import save_weights
 from preshape.models.palm_points import PalmPoints
 from preshape.perception.observation import Observation
 from preshape.perception.view_files import save_view

@@ -56,7 +56,7 @@ def test_entry_points_are_short(path: Path) -> None:
 @pytest.mark.parametrize("path", [path for path in ENTRY_POINTS if path.parts[-2] != "benchmarks"], ids=name)
 def test_an_interrupt_is_understood_from_the_first_import_on(path: Path) -> None:
     imports = (node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if is_import(node))
-    assert ast.unparse(next(imports)) == "import preshape.startup"
+    assert ast.unparse(next(imports)) == "import preshape.command_line.startup"
 
 
 @pytest.mark.parametrize("path", LIBRARY + SIMULATOR + ANALYSIS, ids=name)

@@ -14,8 +14,8 @@ from hydra.errors import ConfigCompositionException
 from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
 
-import preshape.entry_point  # noqa: F401 - registers the resolvers
-from preshape.composition import missing_keys
+import preshape.command_line.entry_point  # noqa: F401 - registers the resolvers
+from preshape.command_line.composition import missing_keys
 
 ROOT = Path(__file__).parents[2]
 CONF = ROOT / "conf"

@@ -32,7 +32,7 @@ from pathlib import Path
 import pytest
 from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
-import preshape.entry_point
+import preshape.command_line.entry_point
 
 @pytest.mark.parametrize(("command", "made"), CHOSEN.items())
 def test_they_are_chosen_and_built(command, made):

@@ -4,7 +4,7 @@ import pytest
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 
-import preshape.entry_point  # noqa: F401 - registers the resolvers
+import preshape.command_line.entry_point  # noqa: F401 - registers the resolvers
 from preshape.paths import project_root
 
 

@@ -10,12 +10,17 @@ from typing import Any
 import pytest
 import yaml
 
-from preshape.source_digest import DECIDES_NOTHING
+from preshape.source_digest import decides_nothing
 
 ROOT = Path(__file__).parents[2]
 PIPELINES = [ROOT / "dvc.yaml", *sorted((ROOT / "pipelines").glob("*/dvc.yaml"))]
 PLACES = {"preshape": ROOT / "src" / "preshape", "sim": ROOT / "sim", "analysis": ROOT / "analysis"}
-PLUMBING = {PLACES["preshape"] / f"{name.partition('.')[2]}.py" for name in DECIDES_NOTHING}
+LIBRARY = PLACES["preshape"]
+PLUMBING = {
+    path
+    for path in LIBRARY.rglob("*.py")
+    if decides_nothing(".".join(("preshape", *path.relative_to(LIBRARY).with_suffix("").parts)))
+}
 
 
 def expanded(stage: dict[str, Any]) -> dict[str, Any]:

@@ -32,7 +32,6 @@ from analysis.fold_record import FoldRecord
 from analysis.learning_charts import training_curves
 from analysis.learning_runs import read_runs
 from analysis.training_metrics import read_training_metrics
-from preshape.checkpoints import load_weights, save_weights, sidecar_path
 from preshape.cornell.image_files import read_colour, read_range
 from preshape.cornell.object_list import read_object_list
 from preshape.cornell.point_cloud_files import read_point_cloud
@@ -40,6 +39,7 @@ from preshape.cornell.rectangle_files import read_rectangles
 from preshape.data.tables import read_data_set
 from preshape.errors import InputError
 from preshape.files import write_json
+from preshape.models.checkpoints import load_weights, save_weights, sidecar_path
 from preshape.models.success_model import GraspNetwork
 from preshape.perception.camera_files import read_camera
 from preshape.perception.view_choice import load_chosen_view

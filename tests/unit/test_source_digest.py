@@ -12,11 +12,13 @@ FILES = {
         '"""Pictures."""\nfrom preshape.lens import focus\n\n\ndef draw():\n    return focus(1)\n'
     ),
     "src/preshape/lens.py": (
-        "import numpy\nimport preshape.files\nimport preshape.glass\n\n\ndef focus(x):\n    return x + 1\n"
+        "import numpy\nimport preshape.files\nimport preshape.glass\nimport preshape.tracking.store\n\n\n"
+        "def focus(x):\n    return x + 1\n"
     ),
     "src/preshape/glass.py": "INDEX = 1.5\n",
     "src/preshape/other.py": "X = 1\n",
     "src/preshape/files.py": "MODE = 1\n",
+    "src/preshape/tracking/store.py": "RUNS = 1\n",
 }
 
 
@@ -42,6 +44,7 @@ def digest() -> str:
         ("src/preshape/glass.py", "1.5", "1.6", False),
         ("src/preshape/other.py", "1", "2", True),
         ("src/preshape/files.py", "1", "2", True),
+        ("src/preshape/tracking/store.py", "1", "2", True),
         ("sim/pictures.py", "Pictures.", "Fine pictures.", True),
         ("src/preshape/glass.py", "INDEX = 1.5", "INDEX = (1.5)  # of crown glass", True),
     ],
@@ -54,8 +57,8 @@ def test_the_digest_follows_the_code(root: Path, name: str, old: str, new: str, 
 
 
 def test_modules_that_decide_nothing_are_there() -> None:
-    names = (name.partition(".")[2] for name in module.DECIDES_NOTHING)
-    assert [name for name in names if not (SOURCES / f"{name}.py").is_file()] == []
+    stems = [SOURCES.joinpath(*name.split(".")[1:]) for name in module.DECIDES_NOTHING]
+    assert [stem for stem in stems if not (stem.is_dir() or stem.with_suffix(".py").is_file())] == []
 
 
 def test_the_real_renderer_and_perception_are_covered() -> None:

@@ -12,7 +12,7 @@ from tiny_training import SETTINGS, make_data, make_network
 
 from preshape.errors import InputError
 from preshape.files import read_json, write_json
-from preshape.tracking import NoTracking
+from preshape.tracking.tracked_run import NoTracking
 from preshape.training_job import TrainingJob
 
 

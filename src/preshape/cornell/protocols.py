@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from preshape.checkpoints import load_weights
 from preshape.cornell.data_module import CornellDataModule
 from preshape.cornell.detection import Detection, Detector
 from preshape.cornell.detection_rates import detection_rates
@@ -22,6 +21,7 @@ from preshape.evaluation.measured_files import (
 )
 from preshape.evaluation.metrics import classification_metrics
 from preshape.files import write_json
+from preshape.models.checkpoints import load_weights
 from preshape.models.success_model import SuccessModel
 from preshape.progress import Progress
 from preshape.training import WEIGHTS_FILE

@@ -10,7 +10,7 @@ from torch import Tensor
 
 from preshape.files import atomic_path
 from preshape.progress import Progress
-from preshape.tracking import TrackedRun
+from preshape.tracking.tracked_run import TrackedRun
 
 log = logging.getLogger(__name__)
 

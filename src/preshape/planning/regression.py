@@ -7,8 +7,8 @@ import numpy as np
 import torch
 from jaxtyping import Float64
 
-from preshape.checkpoints import load_weights
 from preshape.errors import InputError
+from preshape.models.checkpoints import load_weights
 from preshape.models.regression_cnn import RegressionCNN
 from preshape.perception.view_batch import ViewBatch
 

@@ -16,7 +16,7 @@ from preshape.evaluation.fold_summary import FoldResult
 from preshape.files import read_json, write_json
 from preshape.models.regression_cnn import RegressionCNN
 from preshape.models.success_model import GraspNetwork
-from preshape.tracking import UntrackedRun
+from preshape.tracking.tracked_run import UntrackedRun
 from preshape.training import train
 
 

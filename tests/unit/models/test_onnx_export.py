@@ -11,11 +11,11 @@ from synthetic_views import view_of
 from preshape.errors import InputError
 from preshape.hands.allegro import allegro_hand
 from preshape.models.config_cnn import ConfigCNN
+from preshape.models.onnx_export import OUTPUT, export_onnx
 from preshape.models.palm_points import PalmPoints
 from preshape.models.patches_cnn import PatchesCNN
 from preshape.models.regression_cnn import RegressionCNN
 from preshape.models.success_model import SuccessModel
-from preshape.onnx_export import OUTPUT, export_onnx
 from preshape.perception.hand_projection import HandProjection
 
 SPACE = ("network", "allegro_palm14", 14)

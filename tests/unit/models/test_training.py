@@ -15,12 +15,12 @@ from scipy.special import expit
 from synthetic_scenes import write_data_set
 from tiny_training import SETTINGS, make_data, make_network
 
-from preshape.checkpoints import load_weights
 from preshape.data.data_module import GraspDataModule
 from preshape.evaluation.calibration import fit_temperature
 from preshape.measuring import measure, predict
+from preshape.models.checkpoints import load_weights
 from preshape.models.regression_cnn import RegressionCNN
-from preshape.tracking import TrackedRun, UntrackedRun
+from preshape.tracking.tracked_run import TrackedRun, UntrackedRun
 from preshape.training import train
 
 

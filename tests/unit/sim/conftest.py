@@ -5,7 +5,7 @@ from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
-import preshape.entry_point  # noqa: F401 - registers what the configuration refers to
+import preshape.command_line.entry_point  # noqa: F401 - registers what the configuration refers to
 from preshape.paths import project_root
 from sim.robots.description import RobotDescription
 

@@ -12,7 +12,7 @@ from PIL import Image
 from ready_python import ReadyPython
 from synthetic_scenes import ORIGIN, allegro_space, make_scene, make_trial
 
-import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
+import preshape.command_line.entry_point  # noqa: F401  (registers the configuration's resolvers)
 from preshape.data.scene import Scene
 from preshape.data.tables import write_data_set
 from preshape.data.trial import Face, Trial, TrialOutcome

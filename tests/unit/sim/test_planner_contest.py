@@ -9,10 +9,10 @@ import torch
 from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 
-import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
-from preshape.checkpoints import save_weights
+import preshape.command_line.entry_point  # noqa: F401  (registers the configuration's resolvers)
 from preshape.data.trial import Trial
 from preshape.errors import InputError
+from preshape.models.checkpoints import save_weights
 from preshape.paths import project_root
 from sim.planner_contest import EvaluationSettings, Evaluator, try_planners
 

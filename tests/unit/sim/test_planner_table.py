@@ -8,7 +8,7 @@ import pytest
 from preshape.evaluation.intervals import wilson
 from preshape.files import atomic_path, write_json
 from preshape.provenance import TYPED_COMMAND
-from preshape.run_table import join_table, sweep_folder
+from preshape.sweeps.run_table import join_table, sweep_folder
 from sim.planner_table import PlannerTable
 
 SWEPT = "planners.inference.method.max_iterations"

@@ -9,8 +9,7 @@ import torch
 from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 
-import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
-from preshape.checkpoints import save_weights
+import preshape.command_line.entry_point  # noqa: F401  (registers the configuration's resolvers)
 from preshape.cornell.data_set import read_cornell
 from preshape.cornell.rectangle_metric import jaccard
 from preshape.cornell.views import load_cornell_view
@@ -21,6 +20,7 @@ from preshape.data.trial_table import SceneTable, TrialTable
 from preshape.errors import InputError
 from preshape.geometry.pose import make_pose
 from preshape.grasps.rectangle_space import rectangle_of
+from preshape.models.checkpoints import save_weights
 from preshape.paths import project_root
 from preshape.planning.plan_files import read_plan
 from sim.laboratory import Laboratory

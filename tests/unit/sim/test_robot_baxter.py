@@ -7,7 +7,7 @@ import sapien
 from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 
-import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
+import preshape.command_line.entry_point  # noqa: F401  (registers the configuration's resolvers)
 from preshape.errors import InputError
 from preshape.paths import project_root
 from sim.physics import PhysicsSettings, make_scene

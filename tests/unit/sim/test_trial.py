@@ -8,7 +8,7 @@ import pytest
 from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 
-import preshape.entry_point  # noqa: F401  (registers the configuration's resolvers)
+import preshape.command_line.entry_point  # noqa: F401  (registers the configuration's resolvers)
 from preshape.data.scene import Scene
 from preshape.data.trial import Face, Trial, TrialOutcome
 from preshape.geometry.pose import invert_pose, make_pose

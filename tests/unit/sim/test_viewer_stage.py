@@ -10,7 +10,7 @@ from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 from viser import ViserServer
 
-import preshape.entry_point  # noqa: F401 - registers what the configuration refers to
+import preshape.command_line.entry_point  # noqa: F401 - registers what the configuration refers to
 from preshape.configured_planner import planner_of
 from preshape.data.scene import Scene
 from preshape.data.trial import Face, Trial, TrialOutcome

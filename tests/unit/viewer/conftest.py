@@ -9,7 +9,7 @@ from hydra.utils import instantiate
 from omegaconf import DictConfig
 from viser import ViserServer
 
-import preshape.entry_point  # noqa: F401 - registers what the configuration refers to
+import preshape.command_line.entry_point  # noqa: F401 - registers what the configuration refers to
 from preshape.paths import project_root
 from preshape.viewer.robot_body import Robot
 from preshape.viewer.server import ServerSettings, open_server

@@ -8,11 +8,11 @@ from hydra import compose, initialize_config_dir
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import OmegaConf
 
-import preshape.entry_point  # noqa: F401 - registers the resolvers
+import preshape.command_line.entry_point  # noqa: F401 - registers the resolvers
+from preshape.command_line.setting_values import check_values
 from preshape.errors import InputError
-from preshape.setting_values import check_values
 
-CONF = Path(__file__).parents[2] / "conf"
+CONF = Path(__file__).parents[3] / "conf"
 
 
 @pytest.mark.parametrize(

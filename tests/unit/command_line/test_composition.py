@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from omegaconf import OmegaConf
 
-from preshape.composition import check_composition
+from preshape.command_line.composition import check_composition
 from preshape.errors import InputError
 
 ROBOT = {

@@ -8,8 +8,8 @@ from mlflow import MlflowClient
 from parallel_runs import log_fold
 
 from preshape.errors import InputError
-from preshape.mlflow_tracking import MlflowTracking, flatten
-from preshape.tracking import NoTracking, SweepMember
+from preshape.tracking.mlflow_store import MlflowTracking, flatten
+from preshape.tracking.tracked_run import NoTracking, SweepMember
 
 
 def store(folder: Path) -> MlflowTracking:

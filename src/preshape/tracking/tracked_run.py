@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
-from preshape.logged_model import TrainedModel
+from preshape.tracking.logged_model import TrainedModel
 
 MULTIRUN_TAG = "multirun"
 """Tag of the runs that one command made."""

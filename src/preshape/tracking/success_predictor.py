@@ -13,15 +13,15 @@ from safetensors import SafetensorError
 from safetensors.torch import load_file
 from torch import Tensor
 
-from preshape.checkpoints import load_weights
 from preshape.errors import InputError
-from preshape.logged_model import EXAMPLE_VIEW, OUTPUT
+from preshape.models.checkpoints import load_weights
 from preshape.models.success_model import SuccessModel
 from preshape.paths import project_root
 from preshape.perception.object_view import object_cloud, object_patch
 from preshape.perception.segmentation import SegmentationSettings, segment
 from preshape.perception.view_batch import ViewBatch
 from preshape.perception.view_choice import load_chosen_view
+from preshape.tracking.logged_model import EXAMPLE_VIEW, OUTPUT
 
 
 class SuccessPredictor(PythonModel):

@@ -2,6 +2,6 @@
 
 from mlflow.models import set_model
 
-from preshape.success_predictor import SuccessPredictor
+from preshape.tracking.success_predictor import SuccessPredictor
 
 set_model(SuccessPredictor())

@@ -7,9 +7,9 @@ from typing import Any
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig, OmegaConf
 
+from preshape.command_line.setting_values import check_values
 from preshape.errors import InputError
 from preshape.paths import project_root
-from preshape.setting_values import check_values
 
 
 def check_composition(cfg: DictConfig) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from preshape.log_file import LogFile
+from preshape.command_line.log_file import LogFile
 
 FULL = Path("/dev/full")
 

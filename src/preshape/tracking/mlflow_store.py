@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from preshape.errors import InputError
 from preshape.files import exclusive
-from preshape.logged_model import TrainedModel, log_model, register_model
 from preshape.provenance import lasting_command
-from preshape.tracking import MULTIRUN_TAG, SweepMember, TrackedRun
+from preshape.tracking.logged_model import TrainedModel, log_model, register_model
+from preshape.tracking.tracked_run import MULTIRUN_TAG, SweepMember, TrackedRun
 
 if TYPE_CHECKING:
     from mlflow import MlflowClient

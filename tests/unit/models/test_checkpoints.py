@@ -11,10 +11,10 @@ from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 from safetensors.torch import save_file
 
-import preshape.entry_point  # noqa: F401 - registers the resolvers
-from preshape.checkpoints import load_weights, save_weights, sidecar_path
+import preshape.command_line.entry_point  # noqa: F401 - registers the resolvers
 from preshape.data.tables import data_hash
 from preshape.errors import InputError
+from preshape.models.checkpoints import load_weights, save_weights, sidecar_path
 from preshape.models.config_cnn import ConfigCNN
 from preshape.paths import project_root
 

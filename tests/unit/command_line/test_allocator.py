@@ -8,7 +8,7 @@ import pytest
 
 COUNT = """
 import resource, torch
-from preshape.allocator import keep_freed_memory
+from preshape.command_line.allocator import keep_freed_memory
 {call}
 for _ in range(12):
     before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt

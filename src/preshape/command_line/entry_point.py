@@ -13,12 +13,12 @@ from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import InterpolationKeyError
 
-from preshape.composition import check_composition, chosen_option, option_or
+from preshape.command_line.composition import check_composition, chosen_option, option_or
+from preshape.command_line.interruption import end_interrupted, raise_interrupts
 from preshape.errors import InputError, bad_input_behind
-from preshape.interruption import end_interrupted, raise_interrupts
 from preshape.paths import project_root
 from preshape.provenance import TYPED_COMMAND, typed_command
-from preshape.sweep_folders import sweep_group
+from preshape.sweeps.sweep_folders import sweep_group
 
 EXIT_BAD_INPUT = 2
 

@@ -16,9 +16,9 @@ from pathlib import Path
 import hydra
 from omegaconf import DictConfig
 
-import preshape.entry_point
+import preshape.command_line.entry_point
 
-preshape.entry_point.project_root = lambda: Path(__file__).parent
+preshape.command_line.entry_point.project_root = lambda: Path(__file__).parent
 
 
 class Drawing:
@@ -26,7 +26,7 @@ class Drawing:
         os.kill(os.getpid(), signal.SIGSEGV)
 
 
-@preshape.entry_point.entry_point("command")
+@preshape.command_line.entry_point.entry_point("command")
 def main(cfg: DictConfig) -> None:
     try:
         if cfg.interrupt:
@@ -61,7 +61,7 @@ interrupt: null
 @pytest.fixture(scope="module")
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("project")
-    base = Path(__file__).parents[2] / "conf" / "base.yaml"
+    base = Path(__file__).parents[3] / "conf" / "base.yaml"
     (root / "conf" / "part").mkdir(parents=True)
     (root / "conf" / "base.yaml").write_bytes(base.read_bytes())
     (root / "conf" / "command.yaml").write_text(CONFIG)

@@ -6,8 +6,8 @@ import pandas as pd
 import pytest
 
 from preshape.files import write_json
-from preshape.fold_table import FoldTable
-from preshape.run_table import join_table, sweep_folder
+from preshape.sweeps.fold_table import FoldTable
+from preshape.sweeps.run_table import join_table, sweep_folder
 
 COMMAND = "python src/train.py --multirun model=config_cnn,regression split=seen fold=0,1"
 

@@ -16,7 +16,7 @@ from jaxtyping import Float
 from safetensors.torch import save_file
 from torch import Tensor
 
-from preshape.checkpoints import sidecar_path
+from preshape.models.checkpoints import sidecar_path
 from preshape.perception.view_batch import ViewBatch
 from preshape.provenance import package_versions
 

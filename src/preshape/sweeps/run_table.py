@@ -12,7 +12,7 @@ from omegaconf import DictConfig
 
 from preshape.files import atomic_path, exclusive
 from preshape.provenance import command_line
-from preshape.sweep_folders import PLACES
+from preshape.sweeps.sweep_folders import PLACES
 
 RUNS_FILE, TABLE_FILE = "runs.csv", "runs.md"
 WHERE_AND_WHO = ("hydra", "paths", "tracking")

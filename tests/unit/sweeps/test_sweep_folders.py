@@ -1,6 +1,6 @@
 """Folders of a sweep are the same whenever it is started again, and tell settings apart."""
 
-from preshape.sweep_folders import LONGEST, sweep_group
+from preshape.sweeps.sweep_folders import LONGEST, sweep_group
 
 
 def test_a_group_is_the_run_and_what_else_was_chosen() -> None:

@@ -1,0 +1,1 @@
+"""Folders and tables of sweeps, of trainings as of evaluations."""
