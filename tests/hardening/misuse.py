@@ -40,9 +40,14 @@ MODULES = (
     ),
     *("preshape.planning.prior_fitting", "preshape.cornell.protocols", "sim.collection", "sim.label_flips"),
     *("sim.collected_tables", "sim.configured_evaluation", "sim.improvement", "sim.repetition"),
-    *("sim.frame_sheets", "sim.object_portraits", "sim.simulated_cornell", "analysis.dataset_report"),
-    *("analysis.demo_page", "analysis.planning_report", "analysis.learning_report", "analysis.curve_tables"),
-    *("analysis.cornell_report", "analysis.paper_report", "analysis.gripper_report"),
+    *("sim.frame_sheets", "sim.object_portraits", "sim.simulated_cornell", "analysis.dataset.report"),
+    *(
+        "analysis.pages.demo_page",
+        "analysis.planning.report",
+        "analysis.learning.report",
+        "analysis.learning.curve_tables",
+    ),
+    *("analysis.cornell.report", "analysis.pages.paper_report", "analysis.planning.gripper_report"),
 )
 """What the commands import, so that they are at their work soon."""
 FEW = 10

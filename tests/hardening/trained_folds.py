@@ -8,8 +8,8 @@ from hydra.utils import instantiate
 from synthetic_folds import write_fold, write_group
 
 import preshape.command_line.entry_point  # noqa: F401 - registers the resolvers
-from analysis.fold_record import FoldRecord
-from analysis.learning_runs import measured_folds
+from analysis.learning.fold_record import FoldRecord
+from analysis.learning.runs import measured_folds
 from preshape.data.folds import FOLDS
 from preshape.models.checkpoints import save_weights
 from preshape.paths import project_root

@@ -26,11 +26,11 @@ from synthetic_finished_scenes import finished_scene
 from synthetic_folds import write_fold
 from synthetic_scenes import BoxRenderer, allegro_space, make_scene, write_data_set
 
-from analysis.dataset_grasps import read_families
+from analysis.dataset.grasps import read_families
 from analysis.evaluation_folder import read_evaluation
-from analysis.fold_record import FoldRecord
-from analysis.learning_charts import training_curves
-from analysis.learning_runs import read_runs
+from analysis.learning.charts import training_curves
+from analysis.learning.fold_record import FoldRecord
+from analysis.learning.runs import read_runs
 from analysis.training_metrics import read_training_metrics
 from preshape.cornell.image_files import read_colour, read_range
 from preshape.cornell.object_list import read_object_list

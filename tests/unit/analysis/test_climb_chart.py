@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from synthetic_scenes import allegro_space
 
-from analysis.climb_chart import LABEL_SPACING, climb_chart
+from analysis.pages.climb_chart import LABEL_SPACING, climb_chart
 from preshape.data.trial import Face
 from preshape.planning.grasp_plan import GraspPlan
 from preshape.planning.result import PlanResult, PlanStatus

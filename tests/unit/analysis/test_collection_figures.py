@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis.collection_figures import ABOUT_TRIALS, CollectionFigures
+from analysis.dataset.collection_figures import ABOUT_TRIALS, CollectionFigures
 from preshape.errors import InputError
 from preshape.files import read_json, write_json
 

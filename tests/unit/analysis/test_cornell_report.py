@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 from synthetic_cornell import POSITIVE, write_cornell
 
-from analysis.cornell_report import CornellReport
+from analysis.cornell.report import CornellReport
 from preshape.cornell.data_set import read_cornell
 from preshape.cornell.label_agreement import label_agreement
 from preshape.errors import InputError

@@ -5,7 +5,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from analysis.curve_tables import CurveTables
+from analysis.learning.curve_tables import CurveTables
 from preshape.errors import InputError
 from preshape.files import read_json, write_json
 

@@ -10,9 +10,9 @@ import pytest
 from PIL import Image
 from synthetic_scenes import ORIGIN, SIZES_M, allegro_space, make_scene, make_trial
 
-from analysis.dataset_grasps import grasp_frame, read_families
-from analysis.dataset_rates import binned_rates, frame_rate, gridded_counts
-from analysis.dataset_report import PICTURES, DatasetReport
+from analysis.dataset.grasps import grasp_frame, read_families
+from analysis.dataset.rates import binned_rates, frame_rate, gridded_counts
+from analysis.dataset.report import PICTURES, DatasetReport
 from preshape.data.tables import write_data_set
 from preshape.data.trial_table import SceneTable, TrialTable
 from preshape.errors import InputError

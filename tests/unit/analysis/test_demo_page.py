@@ -7,7 +7,7 @@ import lxml.html
 import pytest
 from synthetic_scenes import allegro_space
 
-from analysis.demo_page import DemoPage
+from analysis.pages.demo_page import DemoPage
 from preshape.errors import InputError
 from preshape.files import read_json
 from preshape.hands.allegro import allegro_hand

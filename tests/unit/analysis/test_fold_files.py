@@ -9,8 +9,8 @@ from synthetic_folds import ABOUT, IDENTITY, write_fold
 from synthetic_scenes import write_data_set
 from tiny_training import SETTINGS, make_data, make_network
 
-from analysis.fold_files import read_fold
-from analysis.fold_record import FoldRecord
+from analysis.learning.fold_files import read_fold
+from analysis.learning.fold_record import FoldRecord
 from preshape.errors import InputError
 from preshape.evaluation.fold_summary import FoldResult
 from preshape.files import read_json, write_json

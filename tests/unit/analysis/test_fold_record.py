@@ -10,8 +10,8 @@ import pandas as pd
 import pytest
 from synthetic_folds import IDENTITY, write_fold, write_grasp_fold
 
-from analysis.fold_files import FILES, read_fold
-from analysis.fold_record import FoldRecord
+from analysis.learning.fold_files import FILES, read_fold
+from analysis.learning.fold_record import FoldRecord
 from preshape.errors import InputError
 from preshape.evaluation.fold_summary import FoldResult
 from preshape.files import read_json, write_json
@@ -135,7 +135,7 @@ def test_an_interrupt_leaves_no_half_of_a_fold(
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patched:
-        patched.setattr("analysis.fold_record.write_json", interrupt)
+        patched.setattr("analysis.learning.fold_record.write_json", interrupt)
         with pytest.raises(KeyboardInterrupt):
             record.take("paper", [again])
     assert record.folds("paper") == []

@@ -5,8 +5,8 @@ from pathlib import Path
 from synthetic_scenes import allegro_space
 
 from analysis.evaluation_folder import read_evaluation
-from analysis.gripper_report import GripperReport
-from analysis.planning_runs import of_planner
+from analysis.planning.gripper_report import GripperReport
+from analysis.planning.runs import of_planner
 from preshape.files import read_json
 
 

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 from synthetic_folds import IDENTITY, write_fold, write_grasp_fold, write_group
 
-from analysis.learning_report import LearningReport
+from analysis.learning.report import LearningReport
 from preshape.errors import InputError
 from preshape.evaluation.fold_summary import summarise
 from preshape.files import read_json, write_json

@@ -10,7 +10,7 @@ from hydra import compose, initialize_config_dir
 from hydra.utils import instantiate
 
 import preshape.command_line.entry_point  # noqa: F401 - registers the resolvers
-from analysis.robot_sections import GRIPPER
+from analysis.pages.robot_sections import GRIPPER
 from preshape.errors import InputError
 from preshape.files import file_hash, read_json, write_json
 from preshape.paths import project_root

@@ -8,8 +8,8 @@ from synthetic_scenes import allegro_space
 
 from analysis.evaluation_folder import read_evaluation
 from analysis.paper_figures import ALL, paper_number
-from analysis.planning_report import PlanningReport
-from analysis.planning_runs import of_planner, outcome_by_scene
+from analysis.planning.report import PlanningReport
+from analysis.planning.runs import of_planner, outcome_by_scene
 from preshape.errors import InputError
 from preshape.evaluation.intervals import wilson
 from preshape.files import read_json, write_json

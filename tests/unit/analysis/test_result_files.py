@@ -6,9 +6,9 @@ import pytest
 from PIL import Image
 from synthetic_scenes import allegro_space, write_data_set
 
-from analysis.film_strip import MOMENTS, save_film_strip
+from analysis.dataset.film_strip import MOMENTS, save_film_strip
+from analysis.dataset.object_table import ObjectTable, table_lines
 from analysis.first_pass import FirstPass
-from analysis.object_table import ObjectTable, table_lines
 from analysis.results_page import put_section
 from preshape.data.tables import read_data_set
 from preshape.errors import InputError

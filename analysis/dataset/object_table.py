@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from analysis.film_strip import save_film_strip
+from analysis.dataset.film_strip import save_film_strip
 from analysis.lift_rates import LiftRate, lift_rate, of_object
 from analysis.results_page import put_section
 from analysis.wording import plain_name

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from analysis.cornell_protocols import detection_sheet, recognition_roc
-from analysis.cornell_results import SECTION, results_section
-from analysis.cornell_sheet import contact_sheet
-from analysis.cornell_surfaces import surface_figures
-from analysis.cornell_tables import page
+from analysis.cornell.protocols import detection_sheet, recognition_roc
+from analysis.cornell.results import SECTION, results_section
+from analysis.cornell.sheet import contact_sheet
+from analysis.cornell.surfaces import surface_figures
+from analysis.cornell.tables import page
 from analysis.results_page import put_section
 from preshape.cornell.data_set import CornellDataSet, read_cornell
 from preshape.cornell.folds import image_folds, object_folds

@@ -4,7 +4,7 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.dataset_rates import frame_rate, rates_by
+from analysis.dataset.rates import frame_rate, rates_by
 from analysis.lift_rates import LiftRate
 from preshape.data.trial import TrialOutcome
 

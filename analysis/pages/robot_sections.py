@@ -6,10 +6,10 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from analysis.pages.report_blocks import Block, Cell, Chart, Missing, Picture, Row, Section, Table
+from analysis.pages.report_charts import SERIES, Panel, Rate, Series, lines_with_intervals, rate_panels
 from analysis.paper_figures import paper_number, paper_objects
-from analysis.planning_tables import number, points, probability, share
-from analysis.report_blocks import Block, Cell, Chart, Missing, Picture, Row, Section, Table
-from analysis.report_charts import SERIES, Panel, Rate, Series, lines_with_intervals, rate_panels
+from analysis.planning.tables import number, points, probability, share
 from analysis.result_files import ResultFiles
 from analysis.wording import plain_name, planner_name
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from analysis.cornell_protocols import protocol_table
+from analysis.cornell.protocols import protocol_table
 from analysis.wording import plain_name, table_row
 from preshape.provenance import git_revision, lasting_command
 

@@ -6,7 +6,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from analysis.fold_files import FILES, decisive_identity, read_fold
+from analysis.learning.fold_files import FILES, decisive_identity, read_fold
 from preshape.errors import InputError
 from preshape.evaluation.fold_summary import FoldResult
 from preshape.evaluation.measured_files import (

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from analysis.dataset_grasps import GRASP_TYPES
-from analysis.dataset_rates import RateBin, binned_rates, gridded_counts
+from analysis.dataset.grasps import GRASP_TYPES
+from analysis.dataset.rates import RateBin, binned_rates, gridded_counts
 from analysis.lift_rates import LiftRate
 from analysis.wording import plain_name
 

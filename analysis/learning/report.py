@@ -4,12 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from analysis import learning_charts as charts
-from analysis import learning_tables as tables
-from analysis.ablation_differences import AblationDifference, ablation_differences, difference_lines
 from analysis.chart_files import save_chart
-from analysis.fold_record import FoldRecord
-from analysis.learning_runs import LearningRun, measured_folds, read_runs
+from analysis.learning import charts, tables
+from analysis.learning.ablation_differences import AblationDifference, ablation_differences, difference_lines
+from analysis.learning.fold_record import FoldRecord
+from analysis.learning.runs import LearningRun, measured_folds, read_runs
 from analysis.results_page import put_section
 from preshape.evaluation.average_roc import average_roc_figure
 from preshape.evaluation.fold_summary import split_roc

@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from analysis.cornell_sheet import ACROSS, draw_rectangle, show_around
-from analysis.cornell_surfaces import spread
-from analysis.dataset_charts import BLUE, ORANGE
+from analysis.cornell.sheet import ACROSS, draw_rectangle, show_around
+from analysis.cornell.surfaces import spread
+from analysis.dataset.charts import BLUE, ORANGE
 from analysis.wording import table_row
 from preshape.cornell.data_set import CornellDataSet
 from preshape.cornell.image_files import read_colour

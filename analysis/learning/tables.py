@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from analysis.learning_runs import LearningRun
+from analysis.learning.runs import LearningRun
 from analysis.wording import table_row
 from preshape.evaluation.decisions import PAPER_THRESHOLD
 

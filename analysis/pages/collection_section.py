@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from analysis.planning_tables import share
-from analysis.report_blocks import Block, Cell, Missing, Picture, Section, Table
+from analysis.pages.report_blocks import Block, Cell, Missing, Picture, Section, Table
+from analysis.planning.tables import share
 from analysis.result_files import ResultFiles
 from analysis.wording import plain_name
 from preshape.evaluation.intervals import wilson

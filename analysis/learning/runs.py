@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float
 
-from analysis.fold_files import BASELINES, OF_GRASPS, decisive_identity, read_fold
-from analysis.fold_record import FoldRecord
-from analysis.roc_curves import stored_curve
+from analysis.learning.fold_files import BASELINES, OF_GRASPS, decisive_identity, read_fold
+from analysis.learning.fold_record import FoldRecord
+from analysis.learning.roc_curves import stored_curve
 from preshape.errors import InputError
 from preshape.evaluation.fold_summary import (
     SUMMARY_FILE,

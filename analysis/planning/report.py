@@ -8,9 +8,9 @@ from typing import Any
 
 from analysis.chart_files import save_chart
 from analysis.evaluation_folder import SUMMARY_FILE, Evaluation, read_evaluation
-from analysis.planning_charts import object_figure
-from analysis.planning_runs import paired_tests, planner_run
-from analysis.planning_tables import object_lines, reliability_lines, round_lines, run_lines, test_lines
+from analysis.planning.charts import object_figure
+from analysis.planning.runs import paired_tests, planner_run
+from analysis.planning.tables import object_lines, reliability_lines, round_lines, run_lines, test_lines
 from analysis.results_page import put_section
 from preshape.errors import InputError
 from preshape.evaluation.measured_files import read_figures

@@ -2,16 +2,14 @@
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
-from analysis.embedding import embedded_file
+from analysis.pages.embedding import embedded_file
 from analysis.wording import planner_name
 
 
 def page_template(name: str) -> Template:
-    """A template of the folder `templates`; what is put into it is escaped, and a missing value "
-    "is an error.
-    """
+    """A template of the folder `templates`; what it is given is escaped, and a missing value is an error."""
     environment = Environment(
-        loader=PackageLoader("analysis"),
+        loader=PackageLoader("analysis.pages"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -3,10 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from analysis.planning_charts import object_figure
-from analysis.planning_tables import number, share, signed
-from analysis.report_blocks import Block, Chart, Missing, Row, Section, Table
-from analysis.report_charts import (
+from analysis.pages.report_blocks import Block, Chart, Missing, Row, Section, Table
+from analysis.pages.report_charts import (
     SERIES,
     Panel,
     Rate,
@@ -15,6 +13,8 @@ from analysis.report_charts import (
     rate_panels,
     reliability_panels,
 )
+from analysis.planning.charts import object_figure
+from analysis.planning.tables import number, share, signed
 from analysis.result_files import ResultFiles
 from analysis.wording import plain_name, planner_name
 

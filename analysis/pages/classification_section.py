@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from scipy.stats import t as student_t
 
-from analysis.learning_tables import METRICS, PAPER_AUC, PAPER_DECISIONS, PAPER_RANDOM, SPLITS
-from analysis.report_blocks import Block, Cell, Chart, Missing, Row, Section, Table
-from analysis.report_charts import PAPER, SERIES, Panel, Rate, Series, rate_panels
+from analysis.learning.roc_curves import read_curve
+from analysis.learning.tables import METRICS, PAPER_AUC, PAPER_DECISIONS, PAPER_RANDOM, SPLITS
+from analysis.pages.report_blocks import Block, Cell, Chart, Missing, Row, Section, Table
+from analysis.pages.report_charts import PAPER, SERIES, Panel, Rate, Series, rate_panels
 from analysis.result_files import ResultFiles
-from analysis.roc_curves import read_curve
 from preshape.evaluation.average_roc import average_roc_figure
 
 FOLDS = 5

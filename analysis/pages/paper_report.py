@@ -9,18 +9,18 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from analysis.classification_section import Network, classification_section, mean_of_folds
-from analysis.collection_section import collection_section
-from analysis.embedding import embedded_vector
-from analysis.further_section import further_section
-from analysis.learning_tables import PAPER_AUC
-from analysis.page_template import page_template
+from analysis.learning.tables import PAPER_AUC
+from analysis.pages.classification_section import Network, classification_section, mean_of_folds
+from analysis.pages.collection_section import collection_section
+from analysis.pages.embedding import embedded_vector
+from analysis.pages.further_section import further_section
+from analysis.pages.page_template import page_template
+from analysis.pages.report_blocks import Chart, Section
+from analysis.pages.report_charts import look
+from analysis.pages.robot_sections import gripper_section, hand_section
+from analysis.pages.simulation_section import simulation_section
 from analysis.paper_figures import ALL, paper_number
-from analysis.report_blocks import Chart, Section
-from analysis.report_charts import look
 from analysis.result_files import ResultFiles
-from analysis.robot_sections import gripper_section, hand_section
-from analysis.simulation_section import simulation_section
 from preshape.files import atomic_path
 from preshape.provenance import provenance
 

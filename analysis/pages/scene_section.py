@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import UInt8
 
-from analysis.climb_chart import ClimbChart, climb_chart
-from analysis.embedding import embedded_figure, embedded_file, embedded_picture
 from analysis.evaluation_folder import Evaluation
+from analysis.pages.climb_chart import ClimbChart, climb_chart
+from analysis.pages.embedding import embedded_figure, embedded_file, embedded_picture
 from analysis.wording import outcome_mark, plain_name, planner_name
 from preshape.data.scene import Scene
 from preshape.data.trial import Trial

@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from analysis.cornell_surfaces import spread
-from analysis.dataset_charts import BLUE, ORANGE
+from analysis.cornell.surfaces import spread
+from analysis.dataset.charts import BLUE, ORANGE
 from preshape.cornell.data_set import CornellDataSet
 from preshape.cornell.image_files import read_colour
 from preshape.cornell.layout import HEIGHT, WIDTH

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analysis.learning_runs import LearningRun
-from analysis.learning_tables import NUMBERS, SPLITS, curve_groups, headline
+from analysis.learning.runs import LearningRun
+from analysis.learning.tables import NUMBERS, SPLITS, curve_groups, headline
 from preshape.evaluation.calibration import reliability_diagram
 from preshape.evaluation.measured_files import CURVES_FILE, read_figures
 

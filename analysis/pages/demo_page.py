@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from analysis.evaluation_folder import read_evaluation
-from analysis.page_template import page_template
-from analysis.scene_section import scene_section
+from analysis.pages.page_template import page_template
+from analysis.pages.scene_section import scene_section
 from analysis.training_metrics import read_training_metrics
 from preshape.errors import InputError
 from preshape.files import atomic_path

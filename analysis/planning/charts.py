@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from analysis.dataset_charts import BLUE, ORANGE
+from analysis.dataset.charts import BLUE, ORANGE
 from analysis.paper_figures import ALL, paper_number
 from analysis.wording import plain_name, planner_name
 

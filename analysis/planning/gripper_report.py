@@ -7,8 +7,8 @@ from typing import Any
 
 from analysis.evaluation_folder import Evaluation, read_evaluation
 from analysis.paper_figures import ALL, paper_number
-from analysis.planning_runs import paired_tests, planner_run
-from analysis.planning_tables import object_lines, reliability_lines, run_lines, test_lines
+from analysis.planning.runs import paired_tests, planner_run
+from analysis.planning.tables import object_lines, reliability_lines, run_lines, test_lines
 from analysis.results_page import put_section
 from preshape.files import write_json
 from preshape.grasps.space import GraspSpace

@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from analysis.pages.report_blocks import Block, Cell, Chart, Missing, Row, Section, Table
+from analysis.pages.report_charts import PAPER, SERIES, Panel, Rate, Series, rate_panels
 from analysis.paper_figures import ALL, paper_number
-from analysis.planning_charts import object_figure
-from analysis.planning_tables import number, points, probability, share
-from analysis.report_blocks import Block, Cell, Chart, Missing, Row, Section, Table
-from analysis.report_charts import PAPER, SERIES, Panel, Rate, Series, rate_panels
+from analysis.planning.charts import object_figure
+from analysis.planning.tables import number, points, probability, share
 from analysis.result_files import ResultFiles
 from analysis.wording import planner_name
 

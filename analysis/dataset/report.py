@@ -8,12 +8,11 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
-from analysis import dataset_charts as charts
-from analysis import dataset_tables as tables
 from analysis.chart_files import save_chart
-from analysis.dataset_grasps import grasp_frame, read_families
-from analysis.dataset_rates import rates_by
-from analysis.dataset_summary import summary
+from analysis.dataset import charts, tables
+from analysis.dataset.grasps import grasp_frame, read_families
+from analysis.dataset.rates import rates_by
+from analysis.dataset.summary import summary
 from analysis.results_page import put_section
 from analysis.wording import plain_name
 from preshape.data.tables import data_hash, read_data_set

@@ -1,0 +1,1 @@
+"""What the two-finger networks and planners do in images."""

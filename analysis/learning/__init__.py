@@ -1,0 +1,1 @@
+"""What trainings came to: cross validations, ablations, learning curves."""

@@ -1,0 +1,1 @@
+"""What planners' grasps came to when they were executed."""
