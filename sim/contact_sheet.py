@@ -9,7 +9,7 @@ from hydra.utils import instantiate
 from omegaconf import DictConfig
 
 from preshape.command_line.entry_point import entry_point
-from sim.object_portraits import contact_sheet, save_sheet
+from sim.object_portraits import SheetFile, contact_sheet
 
 log = logging.getLogger(__name__)
 
@@ -17,9 +17,9 @@ log = logging.getLogger(__name__)
 @entry_point("contact_sheet")
 def main(cfg: DictConfig) -> None:
     """Write one picture of all objects."""
+    file = SheetFile(Path(cfg.output), cfg.quality)
     objects = instantiate(cfg.objects.set)
-    sheet = contact_sheet(objects, instantiate(cfg.portrait), instantiate(cfg.sheet))
-    save_sheet(Path(cfg.output), sheet, cfg.quality)
+    file.save(contact_sheet(objects, instantiate(cfg.portrait), instantiate(cfg.sheet)))
     log.info("%d objects: %s", len(objects.names), cfg.output)
 
 

@@ -55,6 +55,32 @@ class SheetSettings:
     font_px: float = 10.0
 
 
+@dataclass(frozen=True)
+class SheetFile:
+    """Where a sheet is written, in the format that the name says.
+
+    Args:
+        path: ends with one of `FORMATS`.
+        quality: of its compression, 0-100; PNG has no losses.
+
+    Raises:
+        InputError: if the name ends otherwise.
+    """
+
+    path: Path
+    quality: int
+
+    def __post_init__(self) -> None:
+        if self.path.suffix not in FORMATS:
+            fix = f"choose one of {', '.join(FORMATS)}"
+            raise InputError("The picture's name does not end with a known format", where=self.path, fix=fix)
+
+    def save(self, sheet: Image.Image) -> None:
+        """Write a sheet; raises `InputError` if the place cannot be written to."""
+        with atomic_path(self.path) as temporary:
+            sheet.save(temporary, quality=self.quality, method=6)
+
+
 def contact_sheet(objects: ObjectSet, portraits: PortraitSettings, sheet: SheetSettings) -> Image.Image:
     """The portraits of all objects of a set in alphabetic order, each with its name."""
     width, height = portraits.width_px, portraits.height_px + sheet.caption_px
@@ -71,24 +97,6 @@ def contact_sheet(objects: ObjectSet, portraits: PortraitSettings, sheet: SheetS
             place, lines, (20, 20, 20), font_size=sheet.font_px, anchor="ma", align="center", spacing=1
         )
     return page
-
-
-def save_sheet(path: Path, sheet: Image.Image, quality: int) -> None:
-    """Write a sheet in the format that its name says.
-
-    Args:
-        path: where; ends with one of `FORMATS`.
-        sheet: the picture.
-        quality: of its compression, 0-100; PNG has no losses.
-
-    Raises:
-        InputError: if the name ends otherwise, or the place cannot be written to.
-    """
-    if path.suffix not in FORMATS:
-        fix = f"choose one of {', '.join(FORMATS)}"
-        raise InputError("The picture's name does not end with a known format", where=path, fix=fix)
-    with atomic_path(path) as temporary:
-        sheet.save(temporary, quality=quality, method=6)
 
 
 def portrait(model: ObjectModel, settings: PortraitSettings) -> UInt8[np.ndarray, "h w 3"]:

@@ -8,7 +8,7 @@ import trimesh
 from PIL import Image
 
 from preshape.errors import InputError
-from sim.object_portraits import PortraitSettings, SheetSettings, contact_sheet, portrait, save_sheet
+from sim.object_portraits import PortraitSettings, SheetFile, SheetSettings, contact_sheet, portrait
 from sim.objects.mesh_folder import MeshFolder
 
 GROUND = (1, 2, 3)
@@ -43,7 +43,7 @@ def test_the_sheet_has_a_place_for_each(balls: MeshFolder) -> None:
 @pytest.mark.parametrize(("suffix", "kind"), [(".webp", "WEBP"), (".png", "PNG"), (".jpg", "JPEG")])
 def test_a_sheet_is_what_its_name_says(suffix: str, kind: str, tmp_path: Path) -> None:
     path = tmp_path / f"sheet{suffix}"
-    save_sheet(path, Image.new("RGB", (8, 8)), 70)
+    SheetFile(path, 70).save(Image.new("RGB", (8, 8)))
     with Image.open(path) as found:
         assert found.format == kind
 
@@ -51,5 +51,5 @@ def test_a_sheet_is_what_its_name_says(suffix: str, kind: str, tmp_path: Path) -
 @pytest.mark.parametrize("name", ["sheet", "sheet.gif"])
 def test_other_kinds_of_pictures_are_refused(name: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="known format"):
-        save_sheet(tmp_path / name, Image.new("RGB", (8, 8)), 70)
+        SheetFile(tmp_path / name, 70)
     assert not list(tmp_path.iterdir())
