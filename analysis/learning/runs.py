@@ -20,7 +20,7 @@ from preshape.evaluation.fold_summary import (
     split_figures,
     split_roc,
 )
-from preshape.evaluation.measured_files import read_figures
+from preshape.evaluation.measured_files import PREDICTIONS_FILE, read_figures, read_predictions
 
 SUCCESS_METRICS = {
     "auc": "auc",
@@ -37,6 +37,8 @@ SUCCESS_METRICS = {
 }
 """Names in the result file, and in the files of the folds."""
 GRASP_METRICS = {name: name for name in OF_GRASPS}
+SAME_GRASP = 1e-4
+"""Grasps are one and the same if no parameter spreads more (m or rad)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +97,20 @@ class LearningRun:
         known = [fold for fold in found if fold is not None]
         labels, success_prob = zip(*known, strict=True)
         return np.concatenate(labels), np.concatenate(success_prob)
+
+    def collapsed_folds(self) -> list[int]:
+        """Folds whose network, which predicts grasps, says the same one whatever it sees.
+
+        Raises:
+            InputError: if a table of predictions cannot be read.
+        """
+        return [fold.content["fold"] for fold in self.folds if _spread(fold) < SAME_GRASP]
+
+
+def _spread(fold: FoldResult) -> float:
+    """Largest standard deviation of a parameter among the predicted grasps (m or rad)."""
+    grasps = np.stack(read_predictions(fold.folder / PREDICTIONS_FILE)["theta_predicted"].to_list())
+    return float(grasps.std(axis=0).max())
 
 
 def measured_folds(folder: str | Path, groups: Collection[str]) -> dict[str, list[FoldResult]]:

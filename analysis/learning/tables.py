@@ -1,6 +1,6 @@
 """Tables of the results page about learning."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -105,7 +105,18 @@ def regression_lines(runs: Runs, group: str) -> list[str]:
     note = (
         "Errors of held-out grasps that lifted; the smallest palm error is that of the best grasp of a fold."
     )
-    return [*_table(header, rows), "", note]
+    return [*_table(header, rows), "", " ".join((note, *_collapses(runs, group)))]
+
+
+def _collapses(runs: Runs, group: str) -> Iterator[str]:
+    for split in SPLITS:
+        run = runs.get((group, split))
+        folds = [] if run is None else run.collapsed_folds()
+        if folds:
+            where = (
+                f"{'fold' if len(folds) == 1 else 'folds'} {', '.join(map(str, folds))} of {split} objects"
+            )
+            yield f"In {where} the network says one grasp, whatever it sees."
 
 
 def _grasp_cells(figures: Mapping[str, Any]) -> list[str]:

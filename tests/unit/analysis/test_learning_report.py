@@ -145,6 +145,17 @@ def test_folds_with_other_trials_are_not_compared(tmp_path: Path) -> None:
     assert differences(tmp_path) == []
 
 
+def test_regression_that_says_one_grasp_whatever_it_sees_is_named(tmp_path: Path) -> None:
+    train = tmp_path / "train" / "regression"
+    for fold in range(3):
+        write_grasp_fold(train / f"unseen_fold{fold}", collapsed=fold == 1)
+    summarise(train, IDENTITY)
+    report(tmp_path).write()
+    page = (tmp_path / "results.md").read_text()
+    assert "In fold 1 of unseen objects the network says one grasp, whatever it sees." in page
+    assert "of seen objects the network says" not in page
+
+
 def test_sweeps_may_be_left_out(tmp_path: Path) -> None:
     write_group(tmp_path / "train" / "moving", *FOLDS)
     before = written(tmp_path)
