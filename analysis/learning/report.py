@@ -84,7 +84,7 @@ class LearningReport:
             ["## Learning"],
             [
                 f"Made by `{lasting_command()}` at revision `{git_revision()}` from sweeps of "
-                "`src/train.py`; mean ± standard deviation over folds. "
+                "`src/train.py`; mean ± standard deviation over folds, or the figure of a single fold. "
                 "What says *not run* has not been measured."
             ],
             *self._classification(runs),
