@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from analysis.learning.runs import LearningRun
-from analysis.learning.tables import NUMBERS, SPLITS, curve_groups, headline
+from analysis.learning.tables import NUMBERS, SPLITS, curve_runs, headline
 from preshape.evaluation.calibration import reliability_diagram
 from preshape.evaluation.measured_files import CURVES_FILE, read_figures
 
@@ -60,7 +60,7 @@ def learning_curves(
     curves = {}
     for label, sweep in sweeps.items():
         for split in SPLITS:
-            found = [runs.get((group, split)) for group in curve_groups(sweep)]
+            found = curve_runs(runs, sweep, split)
             sizes = [*NUMBERS, _all_trials(found[-1])]
             points = [
                 (size, *(headline(run)[part] for part in ("mean", "std")))

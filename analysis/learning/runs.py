@@ -65,6 +65,16 @@ class LearningRun:
         """Name of the network."""
         return str(self.about["model"])
 
+    @property
+    def numbers(self) -> set[int]:
+        """Numbers of the folds."""
+        return {fold.content["fold"] for fold in self.folds}
+
+    def of_folds(self, numbers: Collection[int]) -> "LearningRun":
+        """The same run with some of its folds alone."""
+        folds = [fold for fold in self.folds if fold.content["fold"] in numbers]
+        return replace(self, folds=folds)
+
     def figures(self) -> dict[str, Any]:
         """The run as it stands in the result file."""
         found = split_figures(self.folds)

@@ -176,7 +176,7 @@ def learning_curve_lines(runs: Runs, sweeps: Mapping[str, Mapping[str, str]]) ->
     rows = []
     for label, sweep in sweeps.items():
         for split in SPLITS:
-            found = [runs.get((group, split)) for group in curve_groups(sweep)]
+            found = curve_runs(runs, sweep, split)
             if any(found) or split == "unseen":
                 rows.append([label, split, *(_headline(run) for run in found)])
     note = "AUC; for the regression network the mean error of the palm (m). A row has the same test trials."
@@ -186,6 +186,20 @@ def learning_curve_lines(runs: Runs, sweeps: Mapping[str, Mapping[str, str]]) ->
 def curve_groups(sweep: Mapping[str, str]) -> list[str]:
     """Groups of a learning curve, from few trials to all."""
     return [*(f"{sweep['fewer']},trials_learned={number}" for number in NUMBERS), sweep["all"]]
+
+
+def curve_runs(runs: Runs, sweep: Mapping[str, str], split: str) -> list[LearningRun | None]:
+    """Runs of a learning curve, from few trials to all, with the folds that all of them have: one test set.
+
+    Args:
+        runs: the sweeps.
+        sweep: the group with `all` trials and the beginning of the names of those with `fewer`.
+        split: how test trials were held out.
+    """
+    found = [runs.get((group, split)) for group in curve_groups(sweep)]
+    known = [run for run in found if run is not None]
+    shared = set.intersection(*(run.numbers for run in known)) if known else set()
+    return [None if run is None or not shared else run.of_folds(shared) for run in found]
 
 
 def headline(run: LearningRun) -> Mapping[str, Any]:

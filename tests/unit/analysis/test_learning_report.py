@@ -145,6 +145,23 @@ def test_folds_with_other_trials_are_not_compared(tmp_path: Path) -> None:
     assert differences(tmp_path) == []
 
 
+def test_a_learning_curve_is_of_the_folds_that_all_its_points_have(tmp_path: Path) -> None:
+    train = tmp_path / "train"
+    few = "curve,trials_learned=150"
+    write_group(train / "paper", *FOLDS)
+    area = write_fold(train / few / "unseen_fold1", trained=7, trials_learned=150).auc
+    summarise(train / few, IDENTITY)
+    report(tmp_path).write()
+    (row,) = (
+        line
+        for line in (tmp_path / "results.md").read_text().splitlines()
+        if "config-CNN | unseen | 0" in line
+    )
+    whole = write_fold(tmp_path / "again" / "unseen_fold1").auc
+    assert row.startswith(f"| config-CNN | unseen | {area:.3f} | *not run*")
+    assert row.endswith(f"| {whole:.3f} |")
+
+
 def test_regression_that_says_one_grasp_whatever_it_sees_is_named(tmp_path: Path) -> None:
     train = tmp_path / "train" / "regression"
     for fold in range(3):
