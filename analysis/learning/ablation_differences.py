@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from analysis.learning.runs import LearningRun
+from analysis.learning.tables import SPLITS, Runs
 from analysis.wording import table_row
 from preshape.evaluation.decisions import PAPER_THRESHOLD
 from preshape.evaluation.fold_summary import FoldResult
 from preshape.evaluation.measured_files import PREDICTIONS_FILE, read_predictions
 from preshape.evaluation.paired_metrics import Difference, PairedFold, paired_differences
 
-SPLITS = ("seen", "unseen")
 SAME = ["trial_id", "scene_id", "lifted"]
 """In what two tables of predictions agree if they are of the same trials."""
 COLUMNS = {"auc": "AUC", "brier": "Brier", "accuracy": "accuracy"}
@@ -25,7 +25,7 @@ class AblationDifference:
 
     Args:
         label, group, split: what the network is called in the table, its group and how trials were held out.
-        reference, reference_group: what the first one is called, and its group.
+        reference: group of the first one.
         folds, n: numbers of the folds that both have, and how many test trials these have.
         figures: differences by figure.
     """
@@ -34,21 +34,18 @@ class AblationDifference:
     group: str
     split: str
     reference: str
-    reference_group: str
     folds: Sequence[int]
     n: int
     figures: Mapping[str, Difference]
 
     def to_dict(self) -> dict[str, Any]:
         """As it stands in the result file."""
-        about = {"group": self.group, "less": self.reference_group, "split": self.split}
+        about = {"group": self.group, "less": self.reference, "split": self.split}
         figures = {name: own.to_dict() for name, own in self.figures.items()}
         return {**about, "folds": list(self.folds), "n": self.n, **figures}
 
 
-def ablation_differences(
-    runs: Mapping[tuple[str, str], LearningRun], groups: Mapping[str, str], seed: int
-) -> list[AblationDifference]:
+def ablation_differences(runs: Runs, groups: Mapping[str, str], seed: int) -> list[AblationDifference]:
     """Each network of a table less its first one, where both were run on the same trials.
 
     Args:
@@ -59,15 +56,15 @@ def ablation_differences(
     Raises:
         InputError: if a table of predictions cannot be read.
     """
-    (reference, reference_group), *others = groups.items()
+    (_, reference), *others = groups.items()
     differences = []
     for label, group in others:
         for split in SPLITS:
-            pairs = dict(_pairs(runs.get((group, split)), runs.get((reference_group, split))))
+            pairs = dict(_pairs(runs.get((group, split)), runs.get((reference, split))))
             if pairs:
                 found = paired_differences(list(pairs.values()), np.random.default_rng(seed))
                 n = sum(len(pair.lifted) for pair in pairs.values())
-                about = (label, group, split, reference, reference_group)
+                about = (label, group, split, reference)
                 differences.append(AblationDifference(*about, list(pairs), n, found))
     return differences
 

@@ -4,6 +4,7 @@ from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from preshape.errors import InputError
@@ -102,13 +103,22 @@ def _are_predictions(table: pd.DataFrame, scalars: Mapping[str, Any]) -> bool:
     if len(table) != scalars["n"]:
         return False
     if "auc" not in scalars:
-        return "theta_predicted" in table
+        return "theta_predicted" in table and _are_grasps(table["theta_predicted"])
     kinds = {name: dtype.kind for name, dtype in table.dtypes.items()}
     return (
         (kinds.get("lifted"), kinds.get("success_prob")) == ("b", "f")
         and bool(table["success_prob"].between(0.0, 1.0).all())
         and int(table["lifted"].sum()) == scalars.get("positives")
     )
+
+
+def _are_grasps(column: pd.Series) -> bool:
+    """Whether these are grasps of one space, each number known."""
+    try:
+        grasps = np.stack(column.to_list()).astype(float)
+    except (TypeError, ValueError):
+        return False
+    return grasps.ndim == 2 and bool(np.isfinite(grasps).all())
 
 
 def _are_points(points: Any) -> bool:

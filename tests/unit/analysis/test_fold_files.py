@@ -3,9 +3,10 @@
 from dataclasses import replace
 from pathlib import Path
 
+import pandas as pd
 import pytest
 import torch
-from synthetic_folds import ABOUT, IDENTITY, write_fold
+from synthetic_folds import ABOUT, IDENTITY, write_fold, write_grasp_fold
 from synthetic_scenes import write_data_set
 from tiny_training import SETTINGS, make_data, make_network
 
@@ -77,3 +78,14 @@ def test_figures_that_do_not_say_what_they_are_about_are_refused(tmp_path: Path,
     write_json(path, {name: value for name, value in read_json(path).items() if name != key})
     with pytest.raises(InputError, match=f"does not say {key}"):
         read_fold(path.parent)
+
+
+@pytest.mark.parametrize(
+    "grasps", [[3.0] * 60, [[0.0], [0.0, 1.0]] * 30, [["a"]] * 60, [[float("nan")]] * 60]
+)
+def test_what_are_no_grasps_is_refused(tmp_path: Path, grasps: list[object]) -> None:
+    folder = tmp_path / "seen_fold0"
+    write_grasp_fold(folder)
+    pd.DataFrame({"theta_predicted": grasps}).to_parquet(folder / "predictions.parquet")
+    with pytest.raises(InputError, match="predictions are not those"):
+        read_fold(folder)
