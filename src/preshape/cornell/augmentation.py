@@ -14,6 +14,7 @@ from preshape.cornell.rectangle import GraspRectangle
 from preshape.cornell.rectangle_metric import angle_between, jaccard
 from preshape.cornell.rectangle_views import NORMALS
 from preshape.grasps.rectangle_space import JAW_PX, OPENING_PX
+from preshape.perception.view_batch import ViewBatch
 
 COLOURS = 3
 """Channels of an image that are colours."""
@@ -56,18 +57,18 @@ class Augmentation:
         return moved
 
     def seen_otherwise(
-        self, images: Float[Tensor, "b 8 h w"], theta: Float[Tensor, "b 4"], rng: np.random.Generator
+        self, view: ViewBatch, theta: Float[Tensor, "b 4"], rng: np.random.Generator
     ) -> Float[Tensor, "b 4"]:
-        """Change images in place: put them into another light, and mirror half of them; theta after that."""
+        """Change views in place: put them into another light, and mirror half of them; theta after that."""
         if self.light:
-            noise = torch.from_numpy(self.light * rng.standard_normal((len(images), 4))).to(images)
-            colours = images[:, :COLOURS]
+            noise = torch.from_numpy(self.light * rng.standard_normal((len(theta), 4))).to(theta)
+            colours = view.patch[:, :COLOURS]
             colours.mul_(1 + noise[:, :3, None, None]).add_(noise[:, 3:, None, None]).clamp_(0, 1)
         if not self.mirrored:
             return theta
-        mirrored = torch.from_numpy(rng.integers(0, 2, len(images)).astype(bool))
+        mirrored = torch.from_numpy(rng.integers(0, 2, len(theta)).astype(bool))
         for row in mirrored.nonzero()[:, 0].tolist():
-            images[row] = mirrored_image(images[row])
+            mirror(view, row)
         return torch.where(mirrored[:, None], mirrored_theta(theta), theta)
 
     def drawn_background(
@@ -99,11 +100,13 @@ def is_background(rectangle: GraspRectangle, positives: Sequence[GraspRectangle]
     )
 
 
-def mirrored_image(image: Float[Tensor, "8 h w"]) -> Float[Tensor, "8 h w"]:
-    """An image with left and right exchanged, normals too."""
-    mirrored = image.flip(-1)
-    mirrored[NORMALS.start] *= -1
-    return mirrored
+def mirror(view: ViewBatch, row: int) -> None:
+    """Exchange left and right in one of the views: its image, its normals, its camera and its table."""
+    image = view.patch[row].flip(-1)
+    image[NORMALS.start] *= -1
+    view.patch[row] = image
+    view.intrinsics[row, 2] = image.shape[-1] - 1 - view.intrinsics[row, 2]
+    view.table[row, 0] *= -1
 
 
 def mirrored_theta(theta: Float[Tensor, "b 4"], width: int = WIDTH) -> Float[Tensor, "b 4"]:

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-import torch
 
 from preshape.cornell.augmentation import Augmentation
 from preshape.cornell.data_set import CornellDataSet, CornellImage, read_cornell
@@ -133,8 +132,7 @@ class CornellDataModule(LabelledData):
         loaded = {}
         with Progress("Loading", len(self._data.images), "images") as progress:
             for image in self._data.images:
-                view = torch.from_numpy(self._views.image(image.files))
-                loaded[image.files.number] = LoadedImage(image, view)
+                loaded[image.files.number] = LoadedImage(image, self._views.view(image.files))
                 progress.advance()
         self.train, self.validation, self.test = (
             part.with_images(loaded) for part in (self.train, self.validation, self.test)

@@ -14,7 +14,7 @@ from preshape.cornell.object_finder import centre_of, find_object
 from preshape.cornell.rectangle import GraspRectangle
 from preshape.cornell.rectangle_dataset import LoadedImage
 from preshape.cornell.rectangle_metric import is_correct
-from preshape.cornell.rectangle_views import rectangle_view
+from preshape.cornell.rectangle_views import rectangle_batch
 from preshape.cornell.views import load_cornell_view
 from preshape.errors import InputError
 from preshape.models.success_model import SuccessModel
@@ -125,7 +125,7 @@ class Detector:
         """
         number = loaded.image.files.number
         initial = self.planner.starts.around(centre, np.random.default_rng([self.seed, number]))
-        view = rectangle_view(loaded.view[None].float(), self.planner.views.step_px)
+        view = rectangle_batch([loaded.view])
         plan = self.planner.with_model(model).plan_in(view, initial)
         found = [self._chosen(loaded, plan, 1, "random")]
         for count in self.counts:

@@ -12,7 +12,7 @@ from torch.utils.data import Dataset, Sampler
 
 from preshape.cornell.augmentation import Augmentation
 from preshape.cornell.data_set import CornellImage
-from preshape.cornell.rectangle_views import rectangle_view
+from preshape.cornell.rectangle_views import RectangleView, rectangle_batch
 from preshape.data.batches import PositiveBatches
 from preshape.data.grasp_dataset import GraspBatch
 from preshape.data.trial_table import TrialTable
@@ -58,11 +58,11 @@ class LoadedImage:
 
     Args:
         image: files and labels.
-        view: its 8-channel image, as `rectangle_image` makes it.
+        view: how networks see it.
     """
 
     image: CornellImage
-    view: Float16[Tensor, "8 h w"]
+    view: RectangleView
 
 
 class RectangleDataset(Dataset[GraspBatch]):
@@ -106,7 +106,7 @@ class RectangleDataset(Dataset[GraspBatch]):
             low = np.maximum(centres.min(axis=0) - AROUND_PX, 0) // self._step_px
             high = (centres.max(axis=0) + AROUND_PX) // self._step_px + 1
             (left, top), (right, bottom) = low.astype(int), high.astype(int)
-            yield self.images[number].view[:, top:bottom, left:right]
+            yield torch.from_numpy(self.images[number].view.image[:, top:bottom, left:right])
 
     def __getitem__(self, rows: Sequence[int] | DrawnRows) -> GraspBatch:
         """The examples of these rows as one batch; varied, and with background, if they were drawn."""
@@ -143,7 +143,7 @@ class RectangleDataset(Dataset[GraspBatch]):
         labels: Float[Tensor, "b"],
         rng: np.random.Generator | None = None,
     ) -> GraspBatch:
-        images = torch.stack([own.view for own in loaded]).float()
+        view = rectangle_batch([own.view for own in loaded])
         if rng is not None:
-            theta = self._augmentation.seen_otherwise(images, theta, rng)
-        return GraspBatch(rectangle_view(images, self._step_px), theta, labels)
+            theta = self._augmentation.seen_otherwise(view, theta, rng)
+        return GraspBatch(view, theta, labels)

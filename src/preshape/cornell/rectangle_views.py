@@ -1,11 +1,12 @@
 """Images as views for rectangles: whole, in theta's pixels, and if wanted with fewer of them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import torch
 from jaxtyping import Bool, Float, Float32
-from torch import Tensor
 
 from preshape.errors import InputError
 from preshape.perception.image import CHANNEL_NAMES, eight_channel_image
@@ -15,8 +16,6 @@ from preshape.perception.view_batch import ViewBatch
 
 DEPTH = CHANNEL_NAMES.index("depth")
 NORMALS = slice(DEPTH + 1, DEPTH + 4)
-HEIGHT_LIMIT_M = 0.1
-"""Heights beyond are cut off: floor and walls are no farther from a grasp than this says."""
 
 
 @dataclass(frozen=True)
@@ -25,18 +24,27 @@ class RectangleViewSettings:
 
     Args:
         step_px: along each side, so many pixels of the image are averaged to one of the view; divides both.
-        height: whether the channel of the depth holds heights over the table instead, which do not depend on
-            where the camera stands; the paper has depth.
     """
 
     step_px: int = 1
-    height: bool = False
 
 
-def rectangle_image(
-    observation: Observation, settings: RectangleViewSettings
-) -> Float32[np.ndarray, "8 h w"]:
-    """The 8-channel image of a view, unknown depth, normals and curvature 0 as in `eight_channel_image`.
+class RectangleView(NamedTuple):
+    """An image as the networks see it.
+
+    Args:
+        image: the 8 channels of `eight_channel_image`; half precision is enough.
+        intrinsics: fx, fy, cx, cy of the camera in pixels of this image.
+        table: the table's plane in the camera frame: unit normal up, n . p + d is the height of p in m.
+    """
+
+    image: Float[np.ndarray, "8 h w"]
+    intrinsics: Float32[np.ndarray, "4"]
+    table: Float32[np.ndarray, "4"]
+
+
+def rectangle_view(observation: Observation, settings: RectangleViewSettings) -> RectangleView:
+    """The view of an image, unknown depth, normals and curvature 0 as in `eight_channel_image`.
 
     Averages are over the pixels where a channel is known.
 
@@ -54,41 +62,34 @@ def rectangle_image(
     known = np.ones(image.shape, dtype=bool)
     known[DEPTH] = np.isfinite(observation.depth)
     known[DEPTH + 1 :] = image[NORMALS].any(axis=0)
-    if settings.height:
-        image[DEPTH] = height_over_table(observation)
-    return _averaged(image, known, settings.step_px)
-
-
-def rectangle_view(images: Float[Tensor, "b 8 h w"], step_px: int) -> ViewBatch:
-    """Images of `rectangle_image` as the networks take them.
-
-    A rectangle's point (u, v) in the image counts as the point (u, v, 1), which the intrinsics of the view
-    take to the view's own pixels. Object points, table and box are left out: rectangles know of none.
-    """
-    count, scale = len(images), 1 / step_px
+    camera, step = observation.camera, settings.step_px
     # the centre of the image's first pixel is (0, 0), and so is that of the view's
-    offset = (scale - 1) / 2
-    return ViewBatch(
-        images,
-        torch.tensor([[scale, scale, offset, offset]]).expand(count, 4),
-        torch.zeros(count, 0, 3),
-        torch.zeros(count, 4),
-        torch.eye(4).expand(count, 4, 4),
+    centre = ((own - (step - 1) / 2) / step for own in (camera.cx, camera.cy))
+    intrinsics = np.array([camera.fx / step, camera.fy / step, *centre], dtype=np.float32)
+    return RectangleView(_averaged(image, known, step), intrinsics, _table(observation))
+
+
+def rectangle_batch(views: Sequence[RectangleView]) -> ViewBatch:
+    """Views of images as the networks take them, in single precision.
+
+    Object points and box are left out: rectangles know of none.
+    """
+    images, intrinsics, tables = (
+        torch.from_numpy(np.stack(part)).float() for part in zip(*views, strict=True)
     )
+    count = len(views)
+    return ViewBatch(images, intrinsics, torch.zeros(count, 0, 3), tables, torch.eye(4).expand(count, 4, 4))
 
 
-def height_over_table(observation: Observation) -> Float32[np.ndarray, "h w"]:
-    """Height (m) of each pixel's point over the table; 0 where it is unknown, or if no table is found."""
+def _table(observation: Observation) -> Float32[np.ndarray, "4"]:
+    """The table's plane; across the line of sight at the median depth if no table is found."""
     points = observation.camera.unproject(observation.depth.astype(np.float64))
-    up = observation.camera.T_world_camera[2, :3]
     try:
-        height = find_table(points, up, TableSettings()).height(points)
+        plane = find_table(points, observation.camera.T_world_camera[2, :3], TableSettings()).plane
     except InputError:
-        return np.zeros(observation.depth.shape, dtype=np.float32)
-    limited: Float32[np.ndarray, "h w"] = (
-        np.nan_to_num(height).clip(-HEIGHT_LIMIT_M, HEIGHT_LIMIT_M).astype(np.float32)
-    )
-    return limited
+        known = observation.depth[np.isfinite(observation.depth)]
+        plane = np.array([0.0, 0.0, -1.0, float(np.median(known)) if len(known) else 1.0])
+    return plane.astype(np.float32)
 
 
 def _averaged(

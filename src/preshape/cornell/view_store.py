@@ -4,19 +4,19 @@ import hashlib
 import io
 from dataclasses import astuple
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
-from jaxtyping import Float16
 
 from preshape.cornell.layout import ImageFiles
-from preshape.cornell.rectangle_views import RectangleViewSettings, rectangle_image
+from preshape.cornell.rectangle_views import RectangleView, RectangleViewSettings, rectangle_view
 from preshape.cornell.views import load_cornell_view
 from preshape.data.bounded_folder import BoundedFolder
 from preshape.source_digest import source_digest
 
 
 class ViewStore:
-    """8-channel images in half precision, one file each.
+    """Views with images in half precision, one file each.
 
     A file's name is the digest of the image's files (place, size, time of change), of the settings and of
     the code that makes it.
@@ -33,7 +33,7 @@ class ViewStore:
         self.settings = settings
         self._files = BoundedFolder(folder, round(max_gigabytes * 1e9))
 
-    def image(self, files: ImageFiles) -> Float16[np.ndarray, "8 h w"]:
+    def view(self, files: ImageFiles) -> RectangleView:
         """The view of an image, which is made if its file is missing or damaged.
 
         Raises:
@@ -42,25 +42,27 @@ class ViewStore:
         """
         name = self._name(files)
         content = self._files.read(name)
-        image = None if content is None else _decoded(content)
-        if image is None:
-            view = load_cornell_view(files).observation
-            image = rectangle_image(view, self.settings).astype(np.float16)
+        view = None if content is None else _decoded(content)
+        if view is None:
+            view = rectangle_view(load_cornell_view(files).observation, self.settings)
+            view = view._replace(image=view.image.astype(np.float16))
             buffer = io.BytesIO()
-            np.save(buffer, image, allow_pickle=False)
+            np.savez(buffer, **view._asdict())
             self._files.write(name, buffer.getvalue())
-        return image
+        return view
 
     def _name(self, files: ImageFiles) -> str:
         status = ((path.resolve(), path.stat()) for path in files.pictures)
         parts = [(str(path), own.st_size, own.st_mtime_ns) for path, own in status]
         text = repr((parts, astuple(self.settings), source_digest(__name__)))
-        return f"{hashlib.sha256(text.encode()).hexdigest()}.npy"
+        return f"{hashlib.sha256(text.encode()).hexdigest()}.npz"
 
 
-def _decoded(content: bytes) -> Float16[np.ndarray, "8 h w"] | None:
+def _decoded(content: bytes) -> RectangleView | None:
     try:
-        image = np.load(io.BytesIO(content), allow_pickle=False)
-    except (ValueError, OSError, EOFError):
+        with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
+            view = RectangleView(**arrays)
+    except (ValueError, OSError, EOFError, TypeError, BadZipFile):
         return None
-    return image if image.dtype == np.float16 and image.ndim == 3 else None
+    whole = view.image.dtype == np.float16 and view.image.ndim == 3
+    return view if whole and view.intrinsics.shape == view.table.shape == (4,) else None

@@ -10,7 +10,9 @@ from preshape.models.ensemble import EnsembleModel
 from preshape.models.success_model import IMAGE_CHANNELS, xavier_weights
 from preshape.perception.finite_differences import with_finite_differences
 from preshape.perception.grasp_patches import cut_patches
-from preshape.perception.hand_projection import HandProjection
+from preshape.perception.gripper_frame import GripperFrame
+from preshape.perception.hand_projection import HandProjection, ProjectedHand
+from preshape.perception.image import CHANNEL_NAMES
 from preshape.perception.view_batch import ViewBatch
 
 PALM_PATCH = 200
@@ -20,8 +22,8 @@ FINGER_KERNELS = (6, 3)
 """Widths of the kernels of the fingers' two convolutions."""
 FEATURES = 32
 """Units of each patch's fully connected layer."""
-NORMAL_X, NORMAL_Y = 4, 5
-"""Channels of the normals' components in the image plane."""
+LOOKS = [CHANNEL_NAMES.index(name) for name in ("red", "green", "blue", "curvature")]
+"""Channels that are the same in every frame."""
 
 
 class PatchesCNN(EnsembleModel):
@@ -41,8 +43,8 @@ class PatchesCNN(EnsembleModel):
         palm_patch, finger_patch: width and height of the patches in pixels of the views.
         palm_kernels: widths of the kernels of the palm's two convolutions; those of the fingers' are
             `FINGER_KERNELS`.
-        turned_normals: whether normals turn with the patches, so that a grasp that is turned together with
-            what it is at looks the same; the paper's patches keep those of the camera frame.
+        frame: takes patches into the gripper's own frame, so that a grasp that is turned together with what
+            it is at looks the same; None keeps depths and normals of the camera frame, as the paper does.
         difference_steps: steps in theta (its units) of the finite differences by which the paper derives
             patches; None for the exact derivative.
         members: number m of networks; the paper has one.
@@ -60,19 +62,22 @@ class PatchesCNN(EnsembleModel):
         palm_patch: int = PALM_PATCH,
         finger_patch: int = FINGER_PATCH,
         palm_kernels: Sequence[int] = (12, 6),
-        turned_normals: bool = False,
+        frame: GripperFrame | None = None,
         difference_steps: Sequence[float] | None = None,
         members: int = 1,
     ) -> None:
         super().__init__(name, grasp_space, theta_dim)
         self.projection = projection
         self.palm_patch, self.finger_patch = palm_patch, finger_patch
-        self.turned_normals, self.difference_steps = turned_normals, difference_steps
+        self.frame, self.difference_steps = frame, difference_steps
+        if frame is not None:
+            self.looks_at = ("patch", "intrinsics", "table")
+        channels = IMAGE_CHANNELS if frame is None else len(LOOKS) + frame.channels
         self.members = nn.ModuleList(
             _JoinedPatches(
-                _patch_channel(palm_patch, kernels=palm_kernels, drop=1.0 - keep_prob),
+                _patch_channel(channels, palm_patch, kernels=palm_kernels, drop=1.0 - keep_prob),
                 [
-                    _patch_channel(finger_patch, kernels=FINGER_KERNELS, drop=1.0 - keep_prob)
+                    _patch_channel(channels, finger_patch, kernels=FINGER_KERNELS, drop=1.0 - keep_prob)
                     for _ in range(projection.fingers)
                 ],
                 joint_layer=joint_layer,
@@ -84,7 +89,8 @@ class PatchesCNN(EnsembleModel):
 
     def features(self, view: ViewBatch) -> ViewBatch:
         """The views themselves, from which patches are cut."""
-        return view.to(self.image_mean)
+        view = view.to(self.image_mean)
+        return view if self.frame is None else self.frame.without_holes(view)
 
     def each(self, features: ViewBatch, theta: Float[Tensor, "b {self.theta_dim}"]) -> Float[Tensor, "m b"]:
         """See `EnsembleModel`."""
@@ -94,20 +100,26 @@ class PatchesCNN(EnsembleModel):
 
         steps = self.difference_steps
         palm, fingers = cut(theta) if steps is None else with_finite_differences(cut, theta, steps)
-        prepared = [self._prepared(patch) for patch in (palm, *fingers.unbind(dim=1))]
+        prepared = [
+            patch.contiguous(memory_format=torch.channels_last) for patch in (palm, *fingers.unbind(dim=1))
+        ]
         return torch.stack([member(prepared) for member in self.members])
 
     def _patches(self, features: ViewBatch, theta: Float[Tensor, "b d"]) -> tuple[Tensor, Tensor]:
-        """The palm's patch (b, 8, h, w) and the f fingers' (b, f, 8, h, w) of each grasp."""
+        """The palm's patch (b, c, h, w) and the f fingers' (b, f, c, h, w) of each grasp."""
         hand = self.projection(theta, features.intrinsics)
-        palms = cut_patches(features.patch, hand.palm[:, None], hand.direction, self.palm_patch)
-        fingers = cut_patches(features.patch, hand.fingertips, hand.direction, self.finger_patch)
-        if self.turned_normals:
-            palms, fingers = (_with_turned_normals(own, hand.direction) for own in (palms, fingers))
-        return palms[:, 0], fingers
+        palms = self._patch(features, hand.palm[:, None], hand, self.palm_patch)
+        return palms[:, 0], self._patch(features, hand.fingertips, hand, self.finger_patch)
 
-    def _prepared(self, patch: Float[Tensor, "b 8 h w"]) -> Float[Tensor, "b 8 h w"]:
-        return self.normalize_patch(patch).contiguous(memory_format=torch.channels_last)
+    def _patch(
+        self, view: ViewBatch, centres: Float[Tensor, "b n 2"], hand: ProjectedHand, size: int
+    ) -> Float[Tensor, "b n c size size"]:
+        """Normalised patches around pixels."""
+        patches = cut_patches(view.patch, centres, hand.direction, size)
+        looks = self.normalize_patch(patches)
+        if self.frame is None:
+            return looks
+        return torch.cat((looks[:, :, LOOKS], self.frame.surface(view, centres, patches, hand)), dim=2)
 
 
 class _JoinedPatches(nn.Module):
@@ -125,29 +137,19 @@ class _JoinedPatches(nn.Module):
             layers = [nn.Linear(width, FEATURES), nn.ReLU(), nn.Dropout(drop)]
         self.joint_channel = nn.Sequential(*layers, nn.Linear(FEATURES if joint_layer else width, 1))
 
-    def forward(self, patches: Sequence[Float[Tensor, "b 8 _ _"]]) -> Float[Tensor, "b"]:
+    def forward(self, patches: Sequence[Float[Tensor, "b c _ _"]]) -> Float[Tensor, "b"]:
         channels = (self.palm_channel, *self.finger_channels)
         features = [channel(patch) for channel, patch in zip(channels, patches, strict=True)]
         logits: Tensor = self.joint_channel(torch.cat(features, dim=1))
         return logits.squeeze(1)
 
 
-def _with_turned_normals(
-    patches: Float[Tensor, "b n 8 h w"], direction: Float[Tensor, "b 2"]
-) -> Float[Tensor, "b n 8 h w"]:
-    """The same patches with their normals' components to the right and down in the patch, not the image."""
-    down_u, down_v = (-direction[:, :, None, None, None]).unbind(dim=1)
-    x, y = patches[:, :, NORMAL_X], patches[:, :, NORMAL_Y]
-    turned = torch.stack((down_v * x - down_u * y, down_u * x + down_v * y), dim=2)
-    return torch.cat((patches[:, :, :NORMAL_X], turned, patches[:, :, NORMAL_Y + 1 :]), dim=2)
-
-
-def _patch_channel(size: int, *, kernels: Sequence[int], drop: float) -> nn.Sequential:
+def _patch_channel(channels: int, size: int, *, kernels: Sequence[int], drop: float) -> nn.Sequential:
     """Two convolutions, pooling and a fully connected layer; each of the first three halves the map."""
     first, second = kernels
     pixels = (-(-_halved(_halved(size, first), second) // 2)) ** 2
     return nn.Sequential(
-        nn.Conv2d(IMAGE_CHANNELS, 32, first, stride=2, padding=(first - 1) // 2),
+        nn.Conv2d(channels, 32, first, stride=2, padding=(first - 1) // 2),
         nn.ReLU(),
         nn.Conv2d(32, 8, second, stride=2, padding=(second - 1) // 2),
         nn.ReLU(),

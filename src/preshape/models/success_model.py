@@ -63,7 +63,7 @@ class GraspNetwork(nn.Module):
         self.theta_mean.copy_(finite.mean(dim=0))
         self.theta_std.copy_(finite.std(dim=0, correction=0).clamp_min(MIN_THETA_STD))
 
-    def normalize_patch(self, patch: Float[Tensor, "b 8 h w"]) -> Float[Tensor, "b 8 h w"]:
+    def normalize_patch(self, patch: Float[Tensor, "*b 8 h w"]) -> Float[Tensor, "*b 8 h w"]:
         """Patches with zero mean and unit deviation per channel over the training data.
 
         Patches in half precision, as they are cached, become single precision on the way.

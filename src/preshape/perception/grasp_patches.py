@@ -25,14 +25,7 @@ def cut_patches(
         direction: unit vector in the image (u, v), for each grasp, that points up in its patches.
         size: width and height of the patches in pixels.
     """
-    down = -direction
-    right = torch.stack((down[:, 1], -down[:, 0]), dim=1)
-    steps = torch.arange(size, dtype=image.dtype, device=image.device) - (size - 1) / 2
-    offsets = (
-        steps[None, :, None, None] * down[:, None, None, :]
-        + steps[None, None, :, None] * right[:, None, None, :]
-    )
-    pixels = centres[:, :, None, None, :] + offsets[:, None]
+    pixels = patch_pixels(centres, direction, size)
     # with align_corners, -1 and 1 are the centres of the first and the last pixel
     extent = pixels.new_tensor([image.shape[3] - 1, image.shape[2] - 1])
     grid = (2 * pixels / extent - 1).reshape(len(image), -1, size, 2)
@@ -40,3 +33,17 @@ def cut_patches(
     batch, count = centres.shape[:2]
     apart = patches.reshape(len(image), image.shape[1], batch // len(image), count, size, size)
     return apart.permute(0, 2, 3, 1, 4, 5).reshape(batch, count, image.shape[1], size, size)
+
+
+def patch_pixels(
+    centres: Float[Tensor, "b n 2"], direction: Float[Tensor, "b 2"], size: int
+) -> Float[Tensor, "b n size size 2"]:
+    """Where in the image the pixels (u, v) of patches are, which `cut_patches` cuts."""
+    down = -direction
+    right = torch.stack((down[:, 1], -down[:, 0]), dim=1)
+    steps = torch.arange(size, dtype=centres.dtype, device=centres.device) - (size - 1) / 2
+    offsets = (
+        steps[None, :, None, None] * down[:, None, None, :]
+        + steps[None, None, :, None] * right[:, None, None, :]
+    )
+    return centres[:, :, None, None, :] + offsets[:, None]

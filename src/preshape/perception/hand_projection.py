@@ -53,6 +53,26 @@ class HandProjection(nn.Module):
         return ProjectedHand(pixels[:, 0], pixels[:, 1:], direction)
 
 
+class RectangleProjection(HandProjection):
+    """Projects grasps that are rectangles in the image already.
+
+    Args:
+        hand: where it has its palm and fingertips, as points (u, v, 1) in the image.
+        step_px: pixels of the image along each pixel of its view.
+    """
+
+    def __init__(self, hand: ProjectableHand, step_px: int = 1) -> None:
+        super().__init__(hand)
+        self.step_px = step_px
+
+    def forward(self, theta: Float[Tensor, "b d"], _: Float[Tensor, "#b 4"]) -> ProjectedHand:
+        """Project b grasps; the camera does not matter."""
+        scale = 1 / self.step_px
+        # the centre of the image's first pixel is (0, 0), and so is that of the view's
+        offset = (scale - 1) / 2
+        return super().forward(theta, theta.new_tensor([[scale, scale, offset, offset]]))
+
+
 def project(points: Float[Tensor, "b n 3"], intrinsics: Float[Tensor, "#b 4"]) -> Float[Tensor, "b n 2"]:
     """Pixel coordinates (u, v) of points in the camera frame (m)."""
     depth = points[..., 2:].clamp_min(NEAREST_M)

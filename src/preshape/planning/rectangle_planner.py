@@ -5,13 +5,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import torch
 from jaxtyping import Float, Float64
 
 from preshape.cornell.layout import HEIGHT, WIDTH
 from preshape.cornell.object_finder import FinderSettings, centre_of, find_object
 from preshape.cornell.rectangle import GraspRectangle
-from preshape.cornell.rectangle_views import RectangleViewSettings, rectangle_image, rectangle_view
+from preshape.cornell.rectangle_views import RectangleViewSettings, rectangle_batch, rectangle_view
 from preshape.data.trial import Face
 from preshape.errors import InputError
 from preshape.geometry.pose import pose_over_plane
@@ -141,8 +140,8 @@ class RectanglePlanner:
     def _plan_on(
         self, observation: Observation, table: Float[np.ndarray, "4"], initial: Float64[np.ndarray, "s 4"]
     ) -> GraspPlan:
-        image = torch.from_numpy(rectangle_image(observation, self.views))[None]
-        plan = self.plan_in(rectangle_view(image, self.views.step_px), initial)
+        view = rectangle_batch([rectangle_view(observation, self.views)])
+        plan = self.plan_in(view, initial)
         jaws = tuple(
             jaw_pose(plan.rectangle(start), observation, table, self.pose) for start in range(len(initial))
         )

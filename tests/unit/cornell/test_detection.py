@@ -20,7 +20,7 @@ from preshape.cornell.protocols import FoldOutcome, evaluate_folds, result_rows
 from preshape.cornell.rectangle import GraspRectangle
 from preshape.cornell.rectangle_dataset import LoadedImage
 from preshape.cornell.rectangle_metric import angle_between
-from preshape.cornell.rectangle_views import RectangleViewSettings
+from preshape.cornell.rectangle_views import RectangleView, RectangleViewSettings
 from preshape.cornell.result_file import merge_rows, summary
 from preshape.errors import InputError
 from preshape.files import read_json
@@ -74,7 +74,8 @@ def test_nothing_is_chosen_of_no_rectangle() -> None:
 
 def image_with(*positives: GraspRectangle) -> LoadedImage:
     image = CornellImage(FILES, Subject(1, "block", "table"), positives, ())
-    return LoadedImage(image, torch.zeros(8, 120, 160, dtype=torch.float16))
+    nothing = np.zeros((8, 120, 160), np.float16), np.ones(4, np.float32), np.zeros(4, np.float32)
+    return LoadedImage(image, RectangleView(*nothing))
 
 
 @pytest.mark.parametrize("angle", [0.02, 1.5, math.pi - 0.02])

@@ -7,20 +7,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from synthetic_cornell import BLOCK, surface_points, write_cornell
+from synthetic_cornell import surface_points, write_cornell
 
 from preshape.cornell.augmentation import Augmentation, is_background
 from preshape.cornell.data_module import AugmentedBatchSettings, CornellDataModule
 from preshape.cornell.data_set import read_cornell
 from preshape.cornell.object_finder import centre_of, find_object
 from preshape.cornell.rectangle import GraspRectangle
-from preshape.cornell.rectangle_views import DEPTH, RectangleViewSettings, rectangle_image
+from preshape.cornell.rectangle_views import DEPTH, RectangleViewSettings, rectangle_batch, rectangle_view
 from preshape.cornell.view_store import ViewStore
 from preshape.cornell.views import load_cornell_view
 from preshape.data.folds import HoldOut
 from preshape.errors import InputError
 from preshape.geometry.pose import invert_pose, transform_points
 from preshape.grasps.rectangle_space import rectangle_of, rectangle_space
+from preshape.perception.gripper_frame import GripperFrame
 from preshape.perception.observation import Observation
 
 SPACE = rectangle_space("rectangle4")
@@ -49,7 +50,7 @@ def make_data(
     return CornellDataModule(
         root=root,
         space=SPACE,
-        views=ViewStore(root / "views", RectangleViewSettings(step_px=4, height=True)),
+        views=ViewStore(root / "views", RectangleViewSettings(step_px=4)),
         hold_out=HoldOut(split, fold=fold, validation_fraction=validation, seed=0),
         batches=AugmentedBatchSettings(4, 0, 3, 0, augmentation),
     )
@@ -117,23 +118,33 @@ def test_views_have_no_nan_and_average_what_is_known(observation: Observation) -
     holes = observation.depth.copy()
     holes[:, 300:303] = np.nan
     holes[100:140, 100:140] = np.nan
-    image = rectangle_image(replace(observation, depth=holes), RectangleViewSettings(step_px=4))
+    image = rectangle_view(replace(observation, depth=holes), RectangleViewSettings(step_px=4)).image
     assert image.shape == (8, 120, 160)
     assert np.isfinite(image).all()
     assert not image[DEPTH, 27:33, 27:33].any()
     assert image[DEPTH, 60, 75] == pytest.approx(np.nanmean(holes[240:244, 300:304]), abs=1e-3)
 
 
-def test_heights_do_not_depend_on_the_camera(observation: Observation) -> None:
-    image = rectangle_image(observation, RectangleViewSettings(step_px=1, height=True))
-    block = image[DEPTH][BLOCK]
-    assert np.median(block) == pytest.approx(0.05, abs=0.003)
-    assert np.median(image[DEPTH, 330:400, 200:400]) == pytest.approx(0.0, abs=0.003)
+def test_a_view_without_a_table_has_a_plane_that_it_looks_at(observation: Observation) -> None:
+    nothing = replace(observation, depth=np.full_like(observation.depth, np.nan))
+    view = rectangle_view(nothing, RectangleViewSettings(step_px=4))
+    assert GripperFrame(0.5).without_holes(rectangle_batch([view])).patch.isfinite().all()
+
+
+def test_a_damaged_file_of_a_view_is_made_anew(root: Path, tmp_path: Path) -> None:
+    files = read_cornell(root).images[0].files
+    store = ViewStore(tmp_path, RectangleViewSettings(step_px=4))
+    view = store.view(files)
+    (path,) = tmp_path.rglob("*.npz")
+    for content in (b"", b"PK nothing", path.read_bytes()[:-50], path.read_bytes()[:400]):
+        path.write_bytes(content)
+        again = store.view(files)
+        assert all(np.array_equal(one, other) for one, other in zip(view, again, strict=True))
 
 
 def test_a_step_that_does_not_divide_the_image_is_refused(observation: Observation) -> None:
     with pytest.raises(InputError, match="averaged over 7"):
-        rectangle_image(observation, RectangleViewSettings(step_px=7))
+        rectangle_view(observation, RectangleViewSettings(step_px=7))
 
 
 def bare_table(observation: Observation) -> np.ndarray:

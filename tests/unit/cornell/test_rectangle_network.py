@@ -7,18 +7,19 @@ import pytest
 import torch
 from torch import Tensor
 
-from preshape.cornell.augmentation import mirrored_image, mirrored_theta
+from preshape.cornell.augmentation import mirror, mirrored_theta
 from preshape.cornell.rectangle import GraspRectangle
-from preshape.cornell.rectangle_views import rectangle_view
 from preshape.grasps.rectangle_space import rectangle_of, theta_of
 from preshape.hands.jaws import Jaws
 from preshape.models.patches_cnn import PatchesCNN
-from preshape.perception.hand_projection import HandProjection
+from preshape.perception.gripper_frame import GripperFrame
+from preshape.perception.hand_projection import RectangleProjection
 from preshape.perception.view_batch import ViewBatch
 
-PROJECTION = HandProjection(Jaws())
+PROJECTION = RectangleProjection(Jaws())
+FRAME = GripperFrame(max_tilt_rad=0.52)
 SPACE = ("patches_cnn", "rectangle4", 4)
-THETA = torch.tensor([[30.0, 22.0, 0.7, 12.0], [34.0, 25.0, 2.9, 16.0]], dtype=torch.float64)
+THETA = torch.tensor([[30.3, 22.4, 0.7, 12.0], [34.2, 25.4, 2.9, 16.0]], dtype=torch.float64)
 
 
 def network(**settings: object) -> PatchesCNN:
@@ -35,7 +36,20 @@ def smooth_image(seed: int = 0) -> Tensor:
 
 @pytest.fixture
 def view() -> ViewBatch:
-    return rectangle_view(smooth_image(), 1).to(THETA)
+    """A camera a metre over a table, 10 degrees off the vertical, and a wavy surface on it."""
+    image = smooth_image()
+    image[:, 3] = 0.95 + 0.02 * image[:, 3]
+    facing = torch.tensor([0.0, 0.0, -3.0], dtype=torch.float64)[None, :, None, None]
+    image[:, 4:7] = torch.nn.functional.normalize(image[:, 4:7] + facing, dim=1)
+    intrinsics = torch.tensor([[130.0, 130.0, 30.0, 25.0]])
+    table = torch.tensor([[0.0, -math.sin(0.17), -math.cos(0.17), 1.0]])
+    return ViewBatch(image, intrinsics, torch.zeros(1, 0, 3), table, torch.eye(4)[None]).to(THETA)
+
+
+def framed_signs(*, along: int, across: int) -> Tensor:
+    """Of the channels: colours, curvature, height, normal, point."""
+    axes = [along, across, 1]
+    return torch.tensor([1, 1, 1, 1, 1, *axes, *axes], dtype=torch.float64)[:, None, None]
 
 
 @pytest.mark.parametrize(("joint_layer", "count"), [(False, 315_961), (True, 319_001)])
@@ -60,8 +74,7 @@ def test_palm_and_fingertips_are_at_the_centre_and_the_jaws(step_px: int) -> Non
     corners = np.array([[100.0, 80.0], [130.0, 120.0], [114.0, 132.0], [84.0, 92.0]])
     rectangle = GraspRectangle.from_corners(corners)
     theta = torch.from_numpy(theta_of(rectangle))[None]
-    view = rectangle_view(torch.zeros(1, 8, 480 // step_px, 640 // step_px), step_px).to(theta)
-    hand = PROJECTION(theta, view.intrinsics)
+    hand = RectangleProjection(Jaws(), step_px)(theta, torch.zeros(1, 4))
 
     def in_view(pixels: np.ndarray) -> Tensor:
         return torch.from_numpy((pixels + 0.5) / step_px - 0.5)
@@ -80,12 +93,12 @@ def test_both_vertex_orders_are_the_same_grasp() -> None:
     np.testing.assert_allclose(one, same)
 
 
-@pytest.mark.parametrize("turned_normals", [False, True])
+@pytest.mark.parametrize("frame", [None, FRAME], ids=["camera", "gripper"])
 def test_exact_gradient_agrees_with_the_papers_finite_differences(
-    view: ViewBatch, turned_normals: bool
+    view: ViewBatch, frame: GripperFrame | None
 ) -> None:
-    exact = network(turned_normals=turned_normals)
-    differences = network(turned_normals=turned_normals, difference_steps=[1e-5] * 4)
+    exact = network(frame=frame)
+    differences = network(frame=frame, difference_steps=[1e-5] * 4)
     gradients = []
     for model in (exact, differences):
         theta = THETA.clone().requires_grad_()
@@ -97,6 +110,7 @@ def test_exact_gradient_agrees_with_the_papers_finite_differences(
 
 def test_finite_differences_of_the_papers_kind_point_the_same_way(view: ViewBatch) -> None:
     """With steps of a pixel, as images have them."""
+    view = view._replace(patch=smooth_image())
     gradients = []
     for steps in (None, [1.0, 1.0, 0.02, 1.0]):
         model, theta = network(difference_steps=steps), THETA.clone().requires_grad_()
@@ -121,25 +135,24 @@ def test_the_angle_goes_round(view: ViewBatch) -> None:
 
 
 def test_half_a_turn_exchanges_the_fingers_and_turns_the_patches(view: ViewBatch) -> None:
-    model = network(turned_normals=True)
-    palm, fingers = model._patches(view, THETA)
+    model = network(frame=FRAME)
+    features = model.features(view)
+    palm, fingers = model._patches(features, THETA)
     turned_palm, turned_fingers = model._patches(
-        view, THETA + torch.tensor([0.0, 0.0, math.pi, 0.0], dtype=torch.float64)
+        features, THETA + torch.tensor([0.0, 0.0, math.pi, 0.0], dtype=torch.float64)
     )
-    sign = torch.ones(8, 1, 1, dtype=torch.float64)
-    sign[4:6] = -1
+    sign = framed_signs(along=-1, across=-1)
     torch.testing.assert_close(turned_palm, sign * palm.flip(-1, -2))
     torch.testing.assert_close(turned_fingers, sign * fingers.flip(1, -1, -2))
 
 
 def test_a_mirrored_grasp_sees_mirrored_patches(view: ViewBatch) -> None:
     """So that its label is that of the grasp."""
-    model = network(turned_normals=True)
-    mirrored = view._replace(patch=mirrored_image(view.patch[0])[None])
-    palm, fingers = model._patches(view, THETA)
-    other_palm, other_fingers = model._patches(mirrored, mirrored_theta(THETA, width=64))
-    sign = torch.ones(8, 1, 1, dtype=torch.float64)
-    sign[4] = -1
+    model = network(frame=FRAME)
+    palm, fingers = model._patches(model.features(view), THETA)
+    mirror(view, 0)
+    other_palm, other_fingers = model._patches(model.features(view), mirrored_theta(THETA, width=64))
+    sign = framed_signs(along=-1, across=1)
     torch.testing.assert_close(other_palm, sign * palm.flip(-1))
     torch.testing.assert_close(other_fingers, sign * fingers.flip(1, -1))
 
