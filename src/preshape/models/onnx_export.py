@@ -9,7 +9,7 @@ from torch import Tensor, nn
 from preshape.errors import InputError
 from preshape.files import atomic_path
 from preshape.models.success_model import IMAGE_CHANNELS, GraspNetwork, SuccessModel
-from preshape.perception.object_view import CLOUD_SIZE, PATCH_SIZE
+from preshape.perception.object_view import CLOUD_SIZE
 from preshape.perception.view_batch import ViewBatch
 
 OUTPUT = "logit"
@@ -36,7 +36,7 @@ def export_onnx(path: str | Path, model: GraspNetwork, grasps: int = 1) -> None:
             where="model",
             fix="export a network that does, such as model=config_cnn",
         )
-    example = _example(grasps)
+    example = _example(grasps, model.view_size)
     program = torch.onnx.export(
         _SeparateInputs(model, example).eval(),
         (*(getattr(example, name) for name in model.looks_at), torch.ones(grasps, model.theta_dim)),
@@ -50,9 +50,9 @@ def export_onnx(path: str | Path, model: GraspNetwork, grasps: int = 1) -> None:
         program.save(temporary, external_data=False)
 
 
-def _example(views: int) -> ViewBatch:
+def _example(views: int, size: tuple[int, int]) -> ViewBatch:
     return ViewBatch(
-        torch.zeros(views, IMAGE_CHANNELS, PATCH_SIZE, PATCH_SIZE),
+        torch.zeros(views, IMAGE_CHANNELS, *size),
         torch.ones(views, 4),
         torch.zeros(views, CLOUD_SIZE, 3),
         torch.ones(views, 4),

@@ -67,7 +67,7 @@ class PatchesCNN(EnsembleModel):
         members: int = 1,
     ) -> None:
         super().__init__(name, grasp_space, theta_dim)
-        self.projection = projection
+        self.projection, self.view_size = projection, projection.view_size
         self.palm_patch, self.finger_patch = palm_patch, finger_patch
         self.frame, self.difference_steps = frame, difference_steps
         if frame is not None:

@@ -8,6 +8,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from preshape.perception.object_view import PATCH_SIZE
 from preshape.perception.view_batch import ViewBatch
 
 IMAGE_CHANNELS = 8
@@ -30,9 +31,11 @@ class GraspNetwork(nn.Module):
 
     Attributes:
         looks_at: the parts of a `ViewBatch` that it looks at.
+        view_size: height and width of the views' images (pixels).
     """
 
     looks_at: tuple[str, ...] = ("patch", "intrinsics")
+    view_size = (PATCH_SIZE, PATCH_SIZE)
     image_mean: Tensor
     image_std: Tensor
     theta_mean: Tensor

@@ -51,7 +51,7 @@ class GripperFrame(nn.Module):
         rows, columns = (torch.arange(size).to(fx) for size in depth.shape[1:])
         a, b, c, d = (part[:, None, None] for part in view.table.unbind(dim=1))
         towards = a * ((columns[None, None, :] - cx) / fx) + b * ((rows[None, :, None] - cy) / fy) + c
-        table = (-d / towards.clamp_max(-1e-6)).clamp(0, FARTHEST_M)
+        table = (-d / towards.clamp_max(-1e-6)).clamp(0.0, FARTHEST_M)
         patch = view.patch.clone()
         patch[:, DEPTH] = torch.where(depth > 0, depth, table)
         return view._replace(patch=patch)

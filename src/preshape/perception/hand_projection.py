@@ -7,6 +7,7 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from preshape.hands.projectable import ProjectableHand
+from preshape.perception.object_view import PATCH_SIZE
 
 NEAREST_M = 0.05
 """Points nearer to the camera, or behind it, project as if they were at this depth."""
@@ -31,8 +32,13 @@ class HandProjection(nn.Module):
     """Projects palm and fingertips of grasps by the hand's forward kinematics.
 
     Args:
-        hand: where it has its palm and fingertips: in the camera frame, or as points (u, v, 1) in the image.
+        hand: where it has its palm and fingertips (camera frame).
+
+    Attributes:
+        view_size: height and width of the images in which they appear (pixels).
     """
+
+    view_size = (PATCH_SIZE, PATCH_SIZE)
 
     def __init__(self, hand: ProjectableHand) -> None:
         super().__init__()
@@ -59,11 +65,16 @@ class RectangleProjection(HandProjection):
     Args:
         hand: where it has its palm and fingertips, as points (u, v, 1) in the image.
         step_px: pixels of the image along each pixel of its view.
+        image_size: height and width of the image (pixels).
     """
 
-    def __init__(self, hand: ProjectableHand, step_px: int = 1) -> None:
+    def __init__(
+        self, hand: ProjectableHand, step_px: int = 1, image_size: tuple[int, int] = (480, 640)
+    ) -> None:
         super().__init__(hand)
         self.step_px = step_px
+        height, width = image_size
+        self.view_size = (height // step_px, width // step_px)
 
     def forward(self, theta: Float[Tensor, "b d"], _: Float[Tensor, "#b 4"]) -> ProjectedHand:
         """Project b grasps; the camera does not matter."""
