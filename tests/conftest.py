@@ -1,10 +1,17 @@
 """What all tests share."""
 
 import gc
+import signal
 from collections.abc import Iterator
 
 import pytest
 from ready_python import ReadyPython
+
+
+def pytest_configure() -> None:
+    """Let tests interrupt commands, although in a shell's background interrupts are ignored."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_collection_finish() -> None:
