@@ -12,8 +12,8 @@ from torch import Tensor
 from preshape.cornell.layout import HEIGHT, WIDTH
 from preshape.cornell.rectangle import GraspRectangle
 from preshape.cornell.rectangle_metric import angle_between, jaccard
-from preshape.cornell.rectangle_views import NORMALS
 from preshape.grasps.rectangle_space import JAW_PX, OPENING_PX
+from preshape.perception.image import NORMALS
 from preshape.perception.view_batch import ViewBatch
 
 COLOURS = 3

@@ -9,13 +9,10 @@ import torch
 from jaxtyping import Bool, Float, Float32
 
 from preshape.errors import InputError
-from preshape.perception.image import CHANNEL_NAMES, eight_channel_image
+from preshape.perception.image import DEPTH, NORMALS, eight_channel_image
 from preshape.perception.observation import Observation
 from preshape.perception.table import TableSettings, find_table
 from preshape.perception.view_batch import ViewBatch
-
-DEPTH = CHANNEL_NAMES.index("depth")
-NORMALS = slice(DEPTH + 1, DEPTH + 4)
 
 
 @dataclass(frozen=True)

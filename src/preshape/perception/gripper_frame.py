@@ -7,7 +7,7 @@ from torch.nn.functional import normalize
 
 from preshape.perception.grasp_patches import cut_patches, patch_pixels
 from preshape.perception.hand_projection import ProjectedHand
-from preshape.perception.image import CHANNEL_NAMES
+from preshape.perception.image import DEPTH, NORMALS
 from preshape.perception.view_batch import ViewBatch
 
 UNIT_M = 0.05
@@ -20,8 +20,6 @@ LEAST_NORMAL = 0.1
 """An interpolated normal is one if it is so long."""
 LEAST_FACING = 0.1
 """A surface is taken as if the camera saw it no more at a glance than this cosine says."""
-DEPTH = CHANNEL_NAMES.index("depth")
-NORMALS = slice(DEPTH + 1, DEPTH + 4)
 
 
 class GripperFrame(nn.Module):

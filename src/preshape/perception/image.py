@@ -7,6 +7,8 @@ from preshape.perception.observation import Observation
 from preshape.perception.surface import normals_and_curvature
 
 CHANNEL_NAMES = ("red", "green", "blue", "depth", "normal_x", "normal_y", "normal_z", "curvature")
+DEPTH = CHANNEL_NAMES.index("depth")
+NORMALS = slice(DEPTH + 1, DEPTH + 4)
 
 
 def eight_channel_image(observation: Observation) -> Float32[np.ndarray, "8 h w"]:

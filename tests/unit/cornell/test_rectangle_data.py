@@ -14,7 +14,7 @@ from preshape.cornell.data_module import AugmentedBatchSettings, CornellDataModu
 from preshape.cornell.data_set import read_cornell
 from preshape.cornell.object_finder import centre_of, find_object
 from preshape.cornell.rectangle import GraspRectangle
-from preshape.cornell.rectangle_views import DEPTH, RectangleViewSettings, rectangle_batch, rectangle_view
+from preshape.cornell.rectangle_views import RectangleViewSettings, rectangle_batch, rectangle_view
 from preshape.cornell.view_store import ViewStore
 from preshape.cornell.views import load_cornell_view
 from preshape.data.folds import HoldOut
@@ -22,6 +22,7 @@ from preshape.errors import InputError
 from preshape.geometry.pose import invert_pose, transform_points
 from preshape.grasps.rectangle_space import rectangle_of, rectangle_space
 from preshape.perception.gripper_frame import GripperFrame
+from preshape.perception.image import DEPTH
 from preshape.perception.observation import Observation
 
 SPACE = rectangle_space("rectangle4")
